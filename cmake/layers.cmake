@@ -1,0 +1,57 @@
+# A layer is a folder of the house: one static library made of its .cpp files.
+# USES names the layers below it, LINKS libraries seen in its headers, PRIVATE libraries only in its .cpp files.
+
+set(KINECTLAB_PCH <algorithm> <array> <chrono> <cmath> <cstdint> <functional> <map> <memory> <mutex>
+    <optional> <span> <string> <string_view> <vector> <Eigen/Geometry>)
+
+function(kinectlab_link_layer target)
+  foreach(layer ${ARGN})
+    string(REPLACE "/" "_" name ${layer})
+    target_link_libraries(${target} PUBLIC kinectlab_${name})
+  endforeach()
+endfunction()
+
+function(kinectlab_layer folder)
+  cmake_parse_arguments(ARG "NO_PCH" "" "USES;LINKS;PRIVATE" ${ARGN})
+  string(REPLACE "/" "_" name ${folder})
+  set(target kinectlab_${name})
+  file(GLOB sources CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/${folder}/*.cpp)
+  if(sources)
+    add_library(${target} STATIC ${sources})
+    target_include_directories(${target} PUBLIC ${CMAKE_SOURCE_DIR})
+    target_link_libraries(${target} PUBLIC ${ARG_LINKS} Threads::Threads PRIVATE ${ARG_PRIVATE})
+    kinectlab_pch(${target} "${ARG_NO_PCH}")
+    foreach(used ${ARG_USES})
+      string(REPLACE "/" "_" used_name ${used})
+      target_link_libraries(${target} PUBLIC kinectlab_${used_name})
+    endforeach()
+  else()
+    add_library(${target} INTERFACE)
+    target_include_directories(${target} INTERFACE ${CMAKE_SOURCE_DIR})
+    target_link_libraries(${target} INTERFACE ${ARG_LINKS} Threads::Threads)
+    foreach(used ${ARG_USES})
+      string(REPLACE "/" "_" used_name ${used})
+      target_link_libraries(${target} INTERFACE kinectlab_${used_name})
+    endforeach()
+  endif()
+endfunction()
+
+# One precompiled header for all layers: compiled once, reused by everybody.
+function(kinectlab_pch target skip)
+  if(skip)
+    return()
+  endif()
+  if(NOT TARGET kinectlab_pch)
+    file(WRITE ${CMAKE_BINARY_DIR}/pch.cpp "// Carries the precompiled header.\n")
+    add_library(kinectlab_pch OBJECT ${CMAKE_BINARY_DIR}/pch.cpp)
+    target_link_libraries(kinectlab_pch PRIVATE Eigen3::Eigen Threads::Threads)
+    target_precompile_headers(kinectlab_pch PRIVATE ${KINECTLAB_PCH})
+  endif()
+  target_precompile_headers(${target} REUSE_FROM kinectlab_pch)
+endfunction()
+
+# Read-only files stand beside the program in share/kinectlab, as they do when it is installed.
+function(kinectlab_share name folder)
+  file(MAKE_DIRECTORY ${CMAKE_BINARY_DIR}/share/kinectlab)
+  file(CREATE_LINK ${CMAKE_SOURCE_DIR}/${folder} ${CMAKE_BINARY_DIR}/share/kinectlab/${name} SYMBOLIC)
+endfunction()

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "pipeline/core/error.hpp"
+#include "pipeline/core/measurement.hpp"
+#include "pipeline/core/trajectory.hpp"
+
+namespace kinectlab {
+
+struct PendulumSettings {
+    double length_m = 1.0;         ///< pivot to the bob's centre
+    double length_u_m = 0.0005;    ///< its standard uncertainty
+    double bob_radius_m = 0.05;    ///< solid sphere that turns with the string; 0 = a point
+    double latitude_deg = 45.0;    ///< of the rig, for the turning of the swing plane
+    double depth_scale_u = 1e-3;   ///< relative
+    double clock_u = 2e-5;         ///< relative
+};
+
+/// The fitted motion at the samples' times, for plots.
+struct PendulumFit {
+    std::vector<TimeNs> t;
+    std::vector<Eigen::Vector3d> p_lab;     ///< m; NaN where the sample was not measured
+    std::vector<Eigen::Vector3d> fit_lab;   ///< m
+    std::vector<Eigen::Vector3d> residual;  ///< measured minus fitted, m
+    int used = 0;                           ///< samples that the fit rests on
+    int outliers = 0;                       ///< samples that it weighted down to next to nothing
+    double reduced_chi2 = 0.0;
+};
+
+struct PendulumResult {
+    /// g (m/s²), period (s, as swung), small_angle_period (s), amplitude (rad, at the start),
+    /// damping (1/s), and what else the fit knows.
+    std::vector<Measurement> measurements;
+    PendulumFit fit;
+    std::vector<std::string> warnings;  ///< for a student: what makes this run less good
+};
+
+/// Fits the equation of motion of a damped spherical pendulum on the turning Earth to all measured
+/// positions at once. Only samples with status tracked count; gaps need no filling.
+/// Errors (never a number): fewer than three periods, no motion, amplitude beyond 80°, NaN or
+/// times that do not increase.
+[[nodiscard]] Result<PendulumResult> analyse_pendulum(
+    const Trajectory& trajectory, const PendulumSettings& settings
+);
+
+}  // namespace kinectlab
