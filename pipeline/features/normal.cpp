@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include <Eigen/Cholesky>
+#include <Eigen/LU>
 
 namespace kinectlab {
 
@@ -21,27 +21,27 @@ std::optional<OrientedPoint> oriented_point(
     if (centre == 0) return std::nullopt;
     const double s0 = scale.steps(centre);
 
-    // Least squares of s = s0 + a·du + b·dv + c over the window.
-    Eigen::Matrix3d A = Eigen::Matrix3d::Zero();
-    Eigen::Vector3d y = Eigen::Vector3d::Zero();
-    int used = 0;
-    for (int dv = -half_window; dv <= half_window; ++dv) {
-        for (int du = -half_window; du <= half_window; ++du) {
-            const int column = u + du, row = v + dv;
-            if (column < 0 || row < 0 || column >= camera.width || row >= camera.height) continue;
-            const auto reading = depth[static_cast<std::size_t>(row * camera.width + column)];
-            if (reading == 0) continue;
-            const double s = scale.steps(reading) - s0;
+    // Least squares of s = s0 + a·du + b·dv + c over the window: its six moments, and s with each.
+    double n = 0, mu = 0, mv = 0, muu = 0, muv = 0, mvv = 0, ms = 0, msu = 0, msv = 0;
+    const int left = std::max(-half_window, -u);
+    const int right = std::min(half_window, camera.width - 1 - u);
+    const int top = std::max(-half_window, -v);
+    const int bottom = std::min(half_window, camera.height - 1 - v);
+    for (int dv = top; dv <= bottom; ++dv) {
+        const auto* row = depth.data() + static_cast<std::ptrdiff_t>(v + dv) * camera.width + u;
+        for (int du = left; du <= right; ++du) {
+            if (row[du] == 0) continue;
+            const double s = scale.steps(row[du]) - s0;
             if (std::abs(s) > max_jump_steps) continue;
-            const Eigen::Vector3d x(du, dv, 1.0);
-            A.selfadjointView<Eigen::Lower>().rankUpdate(x);
-            y += s * x;
-            ++used;
+            n += 1, mu += du, mv += dv, muu += du * du, muv += du * dv, mvv += dv * dv;
+            ms += s, msu += s * du, msv += s * dv;
         }
     }
     const int side = 2 * half_window + 1;
-    if (2 * used < side * side) return std::nullopt;
-    const Eigen::Vector3d slope = A.selfadjointView<Eigen::Lower>().ldlt().solve(y);
+    if (2 * n < side * side) return std::nullopt;
+    Eigen::Matrix3d moments;
+    moments << muu, muv, mu, muv, mvv, mv, mu, mv, n;
+    const Eigen::Vector3d slope = moments.inverse() * Eigen::Vector3d(msu, msv, ms);
 
     // s = k·(n/d)·((u-cx)/fx, (v-cy)/fy, 1) compared with the slopes in the picture.
     const Eigen::Vector3d ray = camera.ray(u, v);

@@ -19,21 +19,30 @@ constexpr float kSpreadSigmas = 5.0F;
 constexpr float kMaxWidening = 2.0F;  // a noisy pixel never asks for more than twice the threshold
 constexpr float kNoLimit = 65535.0F;
 
-/// The nearest disparity that still belongs to the scene at each pixel; 0 where nothing is known.
-KINECTLAB_HOT_LOOP void add_threshold(
-    float* __restrict filled,
+/// How much nearer than its reference a reading must be at each pixel, in steps, without rounding.
+KINECTLAB_HOT_LOOP void slack_of(
     const float* __restrict variance,
     const std::uint8_t* __restrict seen,
+    float* __restrict slack,
     std::size_t size,
-    float threshold,
-    float rounding
+    float threshold
+) {
+    for (std::size_t x = 0; x < size; ++x) {
+        const float spread = kSpreadSigmas * std::sqrt(variance[x]);
+        const float steady = std::min(kMaxWidening * threshold, std::max(threshold, spread));
+        const float readings = static_cast<float>(std::max<int>(1, seen[x]));
+        slack[x] = steady * std::sqrt(1.0F + 1.0F / readings);
+    }
+}
+
+/// The nearest disparity that still belongs to the scene at each pixel; 0 where nothing is known.
+KINECTLAB_HOT_LOOP void add_slack(
+    float* __restrict filled, const float* __restrict slack, std::size_t size, float rounding
 ) {
     for (std::size_t x = 0; x < size; ++x) {
         const float s = filled[x];
-        const float spread = kSpreadSigmas * std::sqrt(variance[x]);
-        const float steady = std::min(kMaxWidening * threshold, std::max(threshold, spread));
-        const float few = std::sqrt(1.0F + 1.0F / static_cast<float>(std::max<int>(1, seen[x])));
-        filled[x] = s > 0.0F ? s + steady * few + kSpreadSigmas * rounding * s * s : 0.0F;
+        const float nearest = s + slack[x] + kSpreadSigmas * rounding * s * s;
+        filled[x] = s > 0.0F ? nearest : 0.0F;
     }
 }
 
@@ -84,11 +93,19 @@ ChangeLimits::ChangeLimits(const RgbdCamera& camera, double threshold_steps)
     const auto row = static_cast<std::size_t>(width_), rows = static_cast<std::size_t>(height_);
     reach_.assign(row * rows, 0);
     nearest_rows_.assign(row * rows, 0.0F);
+    slack_.assign(row * rows, threshold_steps_);
     filled_.assign(row, 0.0F);
 }
 
 void ChangeLimits::rebuild(const ReferenceScene& reference) {
     cut_steps_ = wall_cut_steps(reference.disparity());
+    slack_of(
+        reference.variance().data(),
+        reference.seen().data(),
+        slack_.data(),
+        slack_.size(),
+        threshold_steps_
+    );
     update(reference, {0, height_});
 }
 
@@ -128,14 +145,8 @@ void ChangeLimits::nearest_row(const ReferenceScene& reference, int row, std::sp
     const auto disparity = reference.disparity().subspan(first, size);
     std::copy(disparity.begin(), disparity.end(), filled_.begin());
     fill_holes(filled_);
-    add_threshold(
-        filled_.data(),
-        reference.variance().data() + first,
-        reference.seen().data() + first,
-        size,
-        threshold_steps_,
-        static_cast<float>(scale_.rounding_steps(1.0))
-    );
+    const auto rounding = static_cast<float>(scale_.rounding_steps(1.0));
+    add_slack(filled_.data(), slack_.data() + first, size, rounding);
     widen(filled_.data(), nearest.data(), width_);
     widen_border(filled_, nearest);
 }

@@ -19,7 +19,7 @@ public:
 
     /// All rows, and the depth cut anew.
     void rebuild(const ReferenceScene& reference);
-    /// Some rows after the reference followed the scene there; the cut stays.
+    /// Some rows after the reference followed the scene there; the cut and each pixel's noise stay.
     void update(const ReferenceScene& reference, RowRange rows);
 
     [[nodiscard]] std::span<const std::uint16_t> reach() const { return reach_; }
@@ -34,7 +34,7 @@ private:
     float threshold_steps_;
     std::optional<double> cut_steps_;
     std::vector<std::uint16_t> reach_;
-    std::vector<float> nearest_rows_, filled_;
+    std::vector<float> slack_, nearest_rows_, filled_;
 };
 
 }  // namespace kinectlab

@@ -12,6 +12,7 @@ namespace {
 constexpr float kBandSigmas = 4.0F;        // readings this near belong to the same surface
 constexpr float kNearSpreadSteps = 8.0F;   // nearer by more is an object, not noise
 constexpr float kDriftWeight = 1.0F / 32;  // of a new reading once objects move
+constexpr float kNoReading = 1e6F;         // steps: "farther" than anything
 constexpr int kInvalidVisits = 12;         // six seconds without a reading: forgotten
 
 struct Strip {
@@ -28,14 +29,16 @@ KINECTLAB_HOT_LOOP void follow_drift(Strip strip, float product, float sigma, fl
     float* __restrict disparity = strip.disparity;
     std::uint8_t* __restrict unusual = strip.unusual;
     for (std::size_t i = 0; i < strip.size; ++i) {
-        const float s = product / static_cast<float>(depth[i]);  // infinite without a reading
+        const auto counts = static_cast<float>(depth[i]);
+        const float s = counts > 0.0F ? product / counts : -kNoReading;
         const float reference = disparity[i];
         const float deviation = s - reference;
         const float band = kBandSigmas * (sigma + rounding * reference * reference);
-        const bool agrees = std::abs(deviation) <= band;
-        disparity[i] = agrees ? reference + kDriftWeight * deviation : reference;
-        const bool nearer = deviation > band && depth[i] != 0 && reference > 0.0F;
-        unusual[i] = static_cast<std::uint8_t>(!agrees & !nearer);
+        const float drift = std::abs(deviation) <= band ? kDriftWeight * deviation : 0.0F;
+        disparity[i] = reference + drift;
+        // Nearer than a reference: an object, nothing to learn from.
+        const float farther = deviation < -band ? 1.0F : 0.0F;
+        unusual[i] = static_cast<std::uint8_t>(static_cast<int>(reference > 0.0F ? farther : 1.0F));
     }
 }
 

@@ -41,15 +41,18 @@ public:
 private:
     struct Equations;
     void gather(std::span<const std::uint16_t> depth, const Sphere& sphere);
-    [[nodiscard]] Equations accumulate(const Sphere& sphere, double gate_steps, bool fixed) const;
-    void assess(std::span<const std::uint16_t> depth, SphereFit& fit) const;
-    [[nodiscard]] double correlation_inflation(const Sphere& sphere) const;
+    [[nodiscard]] Equations equations(const Sphere& sphere, double gate_steps, bool fixed);
+    [[nodiscard]] bool settle(Sphere& sphere, Equations& sums, double sigma, bool fixed);
+    void assess(SphereFit& fit, double sigma) const;
+    [[nodiscard]] double correlation_inflation() const;
 
     Pinhole camera_;
     DisparityScale scale_;
     int stride_ = 1;
     int columns_ = 0, rows_ = 0;    // of the gathered window
     std::vector<float> x_, y_, s_;  // ray and disparity of each pixel; s = 0 without a reading
+    std::vector<float> weight_, residual_;     // at the last linearisation
+    std::array<std::vector<float>, 4> slope_;  // of the disparity by centre and radius
 };
 
 }  // namespace kinectlab
