@@ -85,8 +85,10 @@ void SimulatedRig::render(RgbdFrame& frame) {
     const FrameRandom random(s.settings.seed, frame.index);
     s.noise.apply(s.caster.cast(bob), random, frame.depth);
     frame.t_colour = s.colour ? frame.t : 0;
-    frame.rgb.clear();
-    if (s.colour) s.colour->render(bob, random, s.settings.noise != NoiseModel::none, frame.rgb);
+    if (s.colour)
+        s.colour->render(bob, random, s.settings.noise != NoiseModel::none, frame.rgb);
+    else
+        frame.rgb.clear();
 }
 
 Truth SimulatedRig::truth() const {
