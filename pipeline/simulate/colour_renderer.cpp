@@ -8,8 +8,8 @@
 namespace kinectlab::simulate {
 namespace {
 
-constexpr float kNoise = 1.7F;       ///< counts of 255
-constexpr float kContrast = 0.035F;  ///< between samples of a pixel; above it takes more of them
+constexpr float kNoise = 1.7F;      ///< counts of 255
+constexpr float kContrast = 0.08F;  ///< between samples of a pixel; above it takes more of them
 
 /// Samples on a grid of `side` x `side` in one pixel.
 struct PixelSamples {
@@ -44,6 +44,32 @@ PixelSamples sample_pixel(
         samples.high = samples.high.cwiseMax(colour);
     }
     return samples;
+}
+
+/// Bounds of a level square's picture, cut to the image; empty if it is not all in front.
+PixelRect picture_of_square(
+    const Pinhole& camera,
+    const Eigen::Isometry3d& T_colour_lab,
+    const Eigen::Vector3d& middle,
+    double half_side
+) {
+    PixelRect rect{camera.width, camera.height, 0, 0};
+    for (const double x : {-half_side, half_side}) {
+        for (const double y : {-half_side, half_side}) {
+            const Eigen::Vector3d corner = T_colour_lab * (middle + Eigen::Vector3d(x, y, 0.0));
+            if (corner.z() < 0.05) return {};
+            const Eigen::Vector2d uv = camera.project(corner);
+            rect.left = std::min(rect.left, static_cast<int>(uv.x()));
+            rect.top = std::min(rect.top, static_cast<int>(uv.y()));
+            rect.right = std::max(rect.right, static_cast<int>(uv.x()) + 2);
+            rect.bottom = std::max(rect.bottom, static_cast<int>(uv.y()) + 2);
+        }
+    }
+    return {
+        std::max(rect.left, 0),
+        std::max(rect.top, 0),
+        std::min(rect.right, camera.width),
+        std::min(rect.bottom, camera.height)};
 }
 
 }  // namespace
@@ -121,14 +147,13 @@ void ColourRenderer::draw_shadow(const Bob& bob) {
     const double penumbra = kLampHalfSize * below / -from_lamp.z();
     const double reach =
         2.5 * bob.radius_m + 1.3 * penumbra + (middle - bob.centre_lab).head<2>().norm();
-    const Eigen::Isometry3d T_colour_lab = T_lab_colour_.inverse();
-    const PixelRect rect = picture_of_sphere(camera_, T_colour_lab * middle, reach);
+    const PixelRect rect = picture_of_square(camera_, T_lab_colour_.inverse(), middle, reach);
     const Eigen::Vector3d& eye = T_lab_colour_.translation();
     PixelRect drawn{rect.right, rect.bottom, rect.left, rect.top};
     for (int v = rect.top; v < rect.bottom; ++v) {
         for (int u = rect.left; u < rect.right; ++u) {
             const Eigen::Vector3d ray = T_lab_colour_.linear() * camera_.ray(u, v);
-            if (ray.z() >= -1e-6) break;  // a level camera sees the table in whole rows or not
+            if (ray.z() >= -1e-6) continue;
             const Eigen::Vector3d p = eye + (room::kTableTop - eye.z()) / ray.z() * ray;
             if (std::abs(p.x()) > room::kTableHalfX || std::abs(p.y()) > room::kTableHalfY)
                 continue;

@@ -90,7 +90,8 @@ bool Room::hides(const Eigen::Vector3d& from, const Eigen::Vector3d& to) const {
     Hit nearest;
     const Eigen::Vector3d direction = to - from;
     for (const Box& box : boxes_)
-        hit_box(box, from + 1e-4 * direction, direction, nearest);
+        if (box.material != Material::mount && from.z() < box.high.z())
+            hit_box(box, from + 1e-4 * direction, direction, nearest);
     return nearest.t < 1.0;
 }
 

@@ -49,7 +49,7 @@ public:
     /// Nearest surface in front of `origin`; Material::none if there is none.
     [[nodiscard]] Hit cast(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction) const;
 
-    /// True if anything stands between the two points.
+    /// True if furniture stands between the two points; the thin mount does not count.
     [[nodiscard]] bool hides(const Eigen::Vector3d& from, const Eigen::Vector3d& to) const;
 
 private:

@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kLampPower = 4.4;
 constexpr int kLampSamples = 2;
-constexpr float kExposure = 0.86F;
+constexpr float kExposure = 1.12F;
 
 /// Schlick 1994.
 double fresnel(double cosine, double head_on) {
