@@ -43,7 +43,8 @@ struct Cloud {
     const auto points = static_cast<std::size_t>(std::max(cloud.width, 0)) *
                         static_cast<std::size_t>(std::max(cloud.height, 0));
     const bool coloured = cloud.rgb.empty() || cloud.rgb.size() == 3 * points;
-    if (cloud.x.size() == points && cloud.y.size() == points && cloud.z.size() == points && coloured)
+    if (cloud.x.size() == points && cloud.y.size() == points && cloud.z.size() == points &&
+        coloured)
         return {};
     return fail(
         ErrorCode::bad_data,

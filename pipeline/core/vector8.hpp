@@ -2,9 +2,10 @@
 
 #include <cstring>
 
-/// Eight floats side by side, for loops that work on eight neighbouring pixels at once. The compiler
-/// makes AVX2 or pairs of SSE operations of them, whichever the surrounding KINECTLAB_HOT_LOOP is
-/// compiled for; so everything here is inlined there. Include in .cpp files only.
+/// Eight floats side by side, for loops that work on eight neighbouring pixels at once. The
+/// compiler makes AVX2 or pairs of SSE operations of them, whichever the surrounding
+/// KINECTLAB_HOT_LOOP is compiled for; so everything here is inlined there. Include in .cpp files
+/// only.
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wpsabi"  // about passing them to functions that are not inlined
 

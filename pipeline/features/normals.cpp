@@ -65,7 +65,7 @@ KINECTLAB_HOT_LOOP void mark_edges(
 /// Sums over the rows of the window, for whole rows of pixels: s, s dv, and the edges.
 struct RowSums {
     std::vector<float> s, s_dv, edges;
-    explicit RowSums(std::size_t n): s(n), s_dv(n), edges(n) {}
+    explicit RowSums(std::size_t n) : s(n), s_dv(n), edges(n) {}
 };
 
 KINECTLAB_HOT_LOOP void add_rows(
@@ -107,7 +107,11 @@ struct Slope {
 };
 
 KINECTLAB_INLINE void put_normals(
-    const Slope& slope, const Float8& u, const Mask8& sound, const RowOptics& optics, int at,
+    const Slope& slope,
+    const Float8& u,
+    const Mask8& sound,
+    const RowOptics& optics,
+    int at,
     RowOut out
 ) {
     const Float8 x = slope.a * optics.fx;
@@ -167,7 +171,8 @@ KINECTLAB_HOT_LOOP Window sum_window(const Inverse& inverse, int u, int v, int h
     for (int dv = -half; dv <= half; ++dv) {
         const float* row = inverse.row(v + dv) + u;
         const auto y = static_cast<float>(dv);
-        // A surface may also slope across the window: allow for it as for a jump, but in proportion.
+        // A surface may also slope across the window: allow for it as for a jump, but in
+        // proportion.
         for (int du = -half; du <= half; du += 8) {
             const Float8 x = lanes + static_cast<float>(du);
             const Float8 read = load8(row + du);

@@ -17,8 +17,9 @@ enum class Basis : std::uint8_t {
 struct MovingLeastSquaresSettings {
     Basis basis = Basis::quadratic;
     double radius_m = 0.02;  ///< neighbours count up to this distance; above 0
-    /// ε of the weight θ(d) = 1/(d² + ε²); above 0. The smaller, the closer the surface keeps to each
-    /// point: at the radius itself the farthest neighbour still weighs half as much as the point.
+    /// ε of the weight θ(d) = 1/(d² + ε²); above 0. The smaller, the closer the surface keeps to
+    /// each point: at the radius itself the farthest neighbour still weighs half as much as the
+    /// point.
     double epsilon_m = 0.02;
     /// Neighbours in a picture may be radius_m + 3 σ_z nearer or farther, σ_z = this x z²: beyond
     /// that they belong to another surface. 1.645e-3 is a Kinect's (Khoshelham & Elberink 2012).
@@ -37,11 +38,11 @@ struct Smoothed {
 };
 
 /// Moving least squares (the paper's equations 1 to 4) on an organised cloud, camera frame, z
-/// forward. The two-dimensional domain of equation 1 is the picture, scaled to metres at the point's
-/// own depth; f is the depth. So the points move along their viewing rays, and the cloud stays
-/// organised. Weights are the paper's for every neighbour; nothing is approximated.
-/// A cloud without any reading comes back as it is. Errors: settings that are not positive numbers,
-/// a radius of more than kMostPixels pixels at the nearest point, a cloud that is not the camera's
+/// forward. The two-dimensional domain of equation 1 is the picture, scaled to metres at the
+/// point's own depth; f is the depth. So the points move along their viewing rays, and the cloud
+/// stays organised. Weights are the paper's for every neighbour; nothing is approximated. A cloud
+/// without any reading comes back as it is. Errors: settings that are not positive numbers, a
+/// radius of more than kMostPixels pixels at the nearest point, a cloud that is not the camera's
 /// width x height or has readings that are not in front of it.
 [[nodiscard]] Result<Smoothed> smooth_organised(
     const Cloud& cloud, const Pinhole& camera, const MovingLeastSquaresSettings& settings

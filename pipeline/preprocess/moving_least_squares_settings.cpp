@@ -8,7 +8,9 @@ Result<void> check(const MovingLeastSquaresSettings& settings) {
     const auto wrong = [](const char* field, double value, const char* cure) {
         return fail(ErrorCode::invalid_argument, field, "is " + std::to_string(value), cure);
     };
-    const auto positive = [](double value) { return std::isfinite(value) && value > 0.0; };
+    const auto positive = [](double value) {
+        return std::isfinite(value) && value > 0.0;
+    };
     if (!positive(settings.radius_m))
         return wrong("radius_m", settings.radius_m, "give metres above 0, such as 0.02");
     if (!positive(settings.epsilon_m))

@@ -68,7 +68,8 @@ public:
         right_.setZero();
         const double epsilon = settings_.epsilon_m * settings_.epsilon_m;
         for (const auto& p : neighbours) {
-            const Eigen::Vector3d local = (plane.axes.transpose() * (p - plane.foot)).cast<double>();
+            const Eigen::Vector3d local =
+                (plane.axes.transpose() * (p - plane.foot)).cast<double>();
             const double theta = 1.0 / (local.tail<2>().squaredNorm() + epsilon);
             const double x = local.y() * inverse_radius_;
             const double y = local.z() * inverse_radius_;

@@ -11,7 +11,7 @@ namespace kinectlab {
 /// decides into which voxel a point on a boundary falls.
 class OctreeBox {
 public:
-    explicit OctreeBox(double voxel_m): voxel_m_(voxel_m) {}
+    explicit OctreeBox(double voxel_m) : voxel_m_(voxel_m) {}
 
     [[nodiscard]] bool holds(float x, float y, float z) const {
         return defined_ && x >= low_[0] && x < high_[0] && y >= low_[1] && y < high_[1] &&

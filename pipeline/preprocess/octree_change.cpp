@@ -38,7 +38,11 @@ KINECTLAB_HOT_LOOP Range range_of(const float* a, const float* b, const float* c
 }
 
 KINECTLAB_HOT_LOOP void cells_along(
-    const float* values, std::size_t n, double low, double voxel_m, std::int32_t origin,
+    const float* values,
+    std::size_t n,
+    double low,
+    double voxel_m,
+    std::int32_t origin,
     std::int32_t* cells
 ) {
     for (std::size_t i = 0; i < n; ++i) {
@@ -136,7 +140,8 @@ Result<OctreeReference> OctreeReference::of(const Cloud& reference, double voxel
     const auto inserted =
         for_cells(reference, made.box_, [&](std::size_t, std::size_t n, const Cells& cells) {
             for (std::size_t i = 0; i < n; ++i)
-                if (cells.x[i] != kNoCell) made.occupied_.insert(cells.x[i], cells.y[i], cells.z[i]);
+                if (cells.x[i] != kNoCell)
+                    made.occupied_.insert(cells.x[i], cells.y[i], cells.z[i]);
         });
     if (!inserted) return tl::unexpected(inserted.error());
     return made;

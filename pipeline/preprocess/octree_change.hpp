@@ -31,7 +31,7 @@ public:
     [[nodiscard]] std::size_t voxels() const { return occupied_.size(); }
 
 private:
-    explicit OctreeReference(double voxel_m): box_(voxel_m) {}
+    explicit OctreeReference(double voxel_m) : box_(voxel_m) {}
 
     OctreeBox box_;
     VoxelSet occupied_;

@@ -108,8 +108,9 @@ private:
             PixelWindow window{0, 0, v, v};
             int last_u = 0;
             for (int u = 0; u < cloud_.width; ++u) {
-                const auto i = static_cast<std::size_t>(v) * static_cast<std::size_t>(cloud_.width) +
-                               static_cast<std::size_t>(u);
+                const auto i =
+                    static_cast<std::size_t>(v) * static_cast<std::size_t>(cloud_.width) +
+                    static_cast<std::size_t>(u);
                 if (!cloud_.valid(i)) continue;
                 window.left += u - last_u;
                 window.right += u - last_u;

@@ -24,7 +24,9 @@ struct Range {
 
 /// -1 if values fall from the first to the last range, otherwise 1.
 float direction_of(const std::vector<Range>& ranges) {
-    const auto seen = [](const Range& range) { return range.least <= range.most; };
+    const auto seen = [](const Range& range) {
+        return range.least <= range.most;
+    };
     const auto first = std::find_if(ranges.begin(), ranges.end(), seen);
     const auto last = std::find_if(ranges.rbegin(), ranges.rend(), seen);
     if (first == ranges.end()) return 1.0F;
@@ -125,21 +127,21 @@ bool PixelWindows::fit(int u, int v, Point3 from, float radius, PixelWindow& win
         radius * kRadiusMargin + kPositionMargin * (std::abs(x) + std::abs(y) + std::abs(z));
 
     // The first column (row) on this side whose points are all far enough away.
-    const auto far_from = [&](const std::vector<Side>& sides, int start, int middle, int last,
-                              float across) {
-        const auto far = [&](int c) {
-            const Side& side = sides[static_cast<std::size_t>(c)];
-            return (side.slope * z - across) * side.scale >= need;
+    const auto far_from =
+        [&](const std::vector<Side>& sides, int start, int middle, int last, float across) {
+            const auto far = [&](int c) {
+                const Side& side = sides[static_cast<std::size_t>(c)];
+                return (side.slope * z - across) * side.scale >= need;
+            };
+            int c = std::clamp(start, middle + 1, last);
+            while (c < last && !far(c))
+                ++c;
+            while (c > middle + 1 && far(c - 1))
+                --c;
+            return c;
         };
-        int c = std::clamp(start, middle + 1, last);
-        while (c < last && !far(c))
-            ++c;
-        while (c > middle + 1 && far(c - 1))
-            --c;
-        return c;
-    };
-    const auto far_before = [&](const std::vector<Side>& sides, int start, int middle,
-                                float across) {
+    const auto far_before = [&](const std::vector<Side>& sides, int start, int middle, float across
+                            ) {
         const auto far = [&](int c) {
             const Side& side = sides[static_cast<std::size_t>(c)];
             return (across - side.slope * z) * side.scale >= need;

@@ -14,10 +14,10 @@ struct PixelWindow {
 };
 
 /// An organised cloud in which a metric radius becomes a window of pixels. The cloud itself tells
-/// how far aside each column and row looks (x/z and y/z), so no camera needs to be known: all points
-/// in the columns from c on lie behind the plane through the camera's centre with the least x/z among
-/// them, and the distance to that plane is a bound that holds.
-/// Keeps its own padded copy of the points. Thread-safe once made.
+/// how far aside each column and row looks (x/z and y/z), so no camera needs to be known: all
+/// points in the columns from c on lie behind the plane through the camera's centre with the least
+/// x/z among them, and the distance to that plane is a bound that holds. Keeps its own padded copy
+/// of the points. Thread-safe once made.
 class PixelWindows {
 public:
     /// Nothing if the cloud is not organised or not seen from one point: z of both signs or 0.

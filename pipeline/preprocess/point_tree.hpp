@@ -11,8 +11,8 @@
 namespace kinectlab {
 
 /// A k-d tree over the points of any cloud that have a reading, balanced whatever they are (two
-/// million equal ones included). Its leaves lie one after the other, each padded with NaN to eights.
-/// Thread-safe once made.
+/// million equal ones included). Its leaves lie one after the other, each padded with NaN to
+/// eights. Thread-safe once made.
 class PointTree {
 public:
     explicit PointTree(const Cloud& cloud);
@@ -31,7 +31,8 @@ public:
     [[nodiscard]] std::span<const Leaf> leaves() const { return leaves_; }
     [[nodiscard]] PointRows rows(const Leaf& leaf) const {
         const auto count = static_cast<int>(leaf.count);
-        return {x_.data() + leaf.begin, y_.data() + leaf.begin, z_.data() + leaf.begin, 0, 1, count};
+        return {
+            x_.data() + leaf.begin, y_.data() + leaf.begin, z_.data() + leaf.begin, 0, 1, count};
     }
     [[nodiscard]] Point3 point(std::uint32_t place) const {
         return {x_[place], y_[place], z_[place]};

@@ -4,7 +4,7 @@
 
 namespace kinectlab {
 
-VoxelSet::VoxelSet(): slots_(1024) {}
+VoxelSet::VoxelSet() : slots_(1024) {}
 
 void VoxelSet::insert(std::int32_t x, std::int32_t y, std::int32_t z) {
     const std::uint64_t block = block_of(x, y, z);

@@ -8,6 +8,10 @@ namespace kinectlab::bench {
 
 Figures measure_frame_to_pose();
 Figures measure_sphere_accuracy();
+Figures measure_outliers();
+Figures measure_moving_least_squares();
+Figures measure_normals();
+Figures measure_octree_change();
 
 /// Everything that can be measured. To add something: declare it above and name it here with the
 /// figures it yields, so that --filter can pass over what is not wanted.
@@ -19,6 +23,10 @@ struct Measurement {
 inline constexpr std::array kMeasurements{
     Measurement{"depth frame to pose, stock chain", measure_frame_to_pose},
     Measurement{"sphere centre accuracy", measure_sphere_accuracy},
+    Measurement{"outliers", measure_outliers},
+    Measurement{"moving least squares", measure_moving_least_squares},
+    Measurement{"normals", measure_normals},
+    Measurement{"octree change", measure_octree_change},
 };
 
 }  // namespace kinectlab::bench
