@@ -21,7 +21,9 @@ bool holds_pcd(const fs::path& folder) {
 
 }  // namespace
 
-Result<std::unique_ptr<FrameSource>> open_recording(const fs::path& path) {
+Result<std::unique_ptr<FrameSource>> open_recording(
+    const fs::path& path, const RecordingOptions& options
+) {
     std::error_code code;
     if (!fs::exists(path, code)) {
         return fail(
@@ -33,7 +35,8 @@ Result<std::unique_ptr<FrameSource>> open_recording(const fs::path& path) {
     }
     if (fs::is_directory(path, code)) {
         const bool has_list = fs::exists(path / "depth.txt", code);
-        return !has_list && holds_pcd(path) ? open_pcd_sequence(path) : open_tum_sequence(path);
+        return !has_list && holds_pcd(path) ? open_pcd_sequence(path)
+                                            : open_tum_sequence(path, options.with_colour);
     }
     if (path.extension() == ".pcd") return open_pcd_sequence(path);
     if (path.extension() == ".oni") return open_oni(path);
