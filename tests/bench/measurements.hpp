@@ -12,6 +12,8 @@ Figures measure_outliers();
 Figures measure_moving_least_squares();
 Figures measure_normals();
 Figures measure_octree_change();
+Figures measure_organised_change();
+Figures measure_depth_cut();
 
 /// Everything that can be measured. To add something: declare it above and name it here with the
 /// figures it yields, so that --filter can pass over what is not wanted.
@@ -27,6 +29,8 @@ inline constexpr std::array kMeasurements{
     Measurement{"moving least squares", measure_moving_least_squares},
     Measurement{"normals", measure_normals},
     Measurement{"octree change", measure_octree_change},
+    Measurement{"change in the image grid", measure_organised_change},
+    Measurement{"depth cut", measure_depth_cut},
 };
 
 }  // namespace kinectlab::bench
