@@ -116,7 +116,8 @@ struct Fit {
 /// Equation 4 by Gaussian elimination without pivoting (the matrix is positive definite), the
 /// constant last, so that nothing has to be substituted back.
 template <int kSize>
-KINECTLAB_INLINE Fit eliminate(Float8 (&a)[kSize][kSize], Float8 (&b)[kSize], Mask8 sound) {
+KINECTLAB_INLINE Fit eliminate(Float8 (&a)[kSize][kSize], Float8 (&b)[kSize], const Mask8& enough) {
+    Mask8 sound = enough;
     for (int p = 0; p < kSize - 1; ++p) {
         const Float8 inverse = 1.0F / a[p][p];
         for (int i = p + 1; i < kSize; ++i) {
