@@ -1,9 +1,7 @@
 #include <cmath>
 #include <cstring>
 #include <optional>
-#include <stdexcept>
 
-#include "pipeline/run/chain.hpp"
 #include "tests/bench/measurements.hpp"
 #include "tests/bench/peer_stock_chain.hpp"
 #include "tests/bench/swing_frames.hpp"
@@ -35,20 +33,9 @@ Timing time_over(const SwingFrames& frames, std::size_t count, int rounds, Find 
     return {1e3 * seconds / all, 1e3 * std::sqrt(squares / found), found / all};
 }
 
-Chain chain_for(const SwingFrames& frames) {
-    ObjectSpec bob;
-    bob.name = "bob";
-    bob.radius_m = frames.radius_m;
-    auto chain = Chain::create({frames.camera, {bob}});
-    if (!chain) throw std::runtime_error(to_text(chain.error()));
-    for (const auto& frame : frames.rest)
-        chain->learn(frame).value();
-    chain->track(frames.swing.front()).value();  // the change limits are made at the first frame
-    return std::move(*chain);
-}
-
 Timing time_chain(const SwingFrames& frames) {
     Chain chain = chain_for(frames);
+    (void)chain.track(frames.swing.front());  // the change limits are made at the first frame
     return time_over(
         frames,
         frames.swing.size(),

@@ -37,6 +37,18 @@ SwingFrames simulated_swing(const SwingSettings& settings) {
     return frames;
 }
 
+Chain chain_for(const SwingFrames& frames) {
+    ObjectSpec bob;
+    bob.name = "bob";
+    bob.radius_m = frames.radius_m;
+    auto chain = Chain::create({frames.camera, {bob}});
+    if (!chain) throw std::runtime_error(to_text(chain.error()));
+    for (const auto& frame : frames.rest)
+        if (const auto learned = chain->learn(frame); !learned)
+            throw std::runtime_error(to_text(learned.error()));
+    return std::move(*chain);
+}
+
 double thread_seconds() {
     timespec now{};
     clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);

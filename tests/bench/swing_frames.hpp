@@ -4,6 +4,7 @@
 
 #include "pipeline/core/camera.hpp"
 #include "pipeline/core/frame.hpp"
+#include "pipeline/run/chain.hpp"
 #include "pipeline/simulate/noise_model.hpp"
 
 namespace kinectlab::bench {
@@ -25,6 +26,9 @@ struct SwingSettings {
 };
 
 [[nodiscard]] SwingFrames simulated_swing(const SwingSettings& settings);
+
+/// A chain that tracks the bob with its radius known, and has learned the frames at rest.
+[[nodiscard]] Chain chain_for(const SwingFrames& frames);
 
 /// CPU time of this thread in seconds: other programs on the machine do not count.
 [[nodiscard]] double thread_seconds();
