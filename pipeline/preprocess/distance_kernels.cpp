@@ -147,7 +147,7 @@ const DistanceKernels& distance_kernels() {
 
 Rank rank_of(const DistanceKernels& kernels, float* values, int size, int k, float limit) {
     for (int i = 0; i < 8; ++i)
-        values[size + i] = std::numeric_limits<float>::infinity();
+        values[size + i] = std::numeric_limits<float>::quiet_NaN();
     if (size == k) return {limit, k};
     float low = 0.0F;
     float high = limit;

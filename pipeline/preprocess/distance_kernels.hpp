@@ -22,7 +22,7 @@ struct DistanceKernels {
     /// Appends the squared distances below `limit` to `out`, which has room for all points and
     /// eight more; returns how many.
     int (*collect)(const PointRows& points, Point3 from, float limit, float* out);
-    /// How many of `values` are at most `limit`; `values` are padded with infinity to eights.
+    /// How many of `values` are at most `limit`; `values` are padded with NaN to eights.
     int (*count)(const float* values, int size, float limit);
     /// Sum of the roots of those that are at most `limit`, each rounded to float.
     double (*sum_roots)(const float* values, int size, float limit);
