@@ -12,16 +12,10 @@
 #include "server/lab/people.hpp"
 #include "server/lab/rig.hpp"
 #include "server/lab/run.hpp"
+#include "server/rig/rig_settings.hpp"
 #include "server/store/store.hpp"
 
 namespace kinectlab::rig {
-
-struct RigSettings {
-    std::string id;    ///< in URLs: "rig-1"
-    std::string name;  ///< for people
-    std::string uri;   ///< of the device, e.g. "sim://rig-1?seed=1"
-    std::vector<std::string> experiments{"pendulum"};
-};
 
 struct RunRequest {
     std::string rig;
