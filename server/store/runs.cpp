@@ -192,12 +192,16 @@ std::vector<lab::RunChange> RunRepository::history(lab::RunId id) {
     return changes;
 }
 
-std::vector<lab::RunId> RunRepository::interrupt_unfinished(TimeNs now, const std::string& reason) {
+std::vector<lab::RunId> RunRepository::interrupt_unfinished(
+    TimeNs now, const std::string& reason, const std::optional<std::string>& rig
+) {
     Database::Transaction transaction(database_);
     std::vector<lab::RunId> open;
     SQLite::Statement query(
-        transaction.connection(), "SELECT id FROM runs WHERE ended_ns IS NULL ORDER BY id"
+        transaction.connection(),
+        "SELECT id FROM runs WHERE ended_ns IS NULL AND rig = coalesce(?, rig) ORDER BY id"
     );
+    if (rig) query.bind(1, *rig);
     while (query.executeStep())
         open.push_back(query.getColumn(0).getInt64());
     for (const lab::RunId id : open) {
