@@ -18,9 +18,7 @@ struct Polar {
     Eigen::Vector2d heading;  ///< unit, horizontal
     [[nodiscard]] Eigen::Vector2d across() const { return {-heading.y(), heading.x()}; }
     [[nodiscard]] Eigen::Vector3d direction() const {
-        return {
-            std::sin(angle) * heading.x(), std::sin(angle) * heading.y(), -std::cos(angle)
-        };
+        return {std::sin(angle) * heading.x(), std::sin(angle) * heading.y(), -std::cos(angle)};
     }
     [[nodiscard]] Eigen::Vector3d outwards() const {
         return {std::cos(angle) * heading.x(), std::cos(angle) * heading.y(), std::sin(angle)};
@@ -38,8 +36,7 @@ Polar polar_of(const Eigen::Vector3d& n) {
     const double horizontal = n.head<2>().norm();
     return {
         std::atan2(horizontal, -n.z()),
-        horizontal > 0.0 ? Eigen::Vector2d(n.head<2>() / horizontal) : Eigen::Vector2d::UnitX()
-    };
+        horizontal > 0.0 ? Eigen::Vector2d(n.head<2>() / horizontal) : Eigen::Vector2d::UnitX()};
 }
 
 Eigen::Vector2d rotation_rate(const Polar& polar, const Eigen::Vector3d& n_dot) {
@@ -82,7 +79,9 @@ Result<void> ActuatedPendulum::apply(const Command& command) {
                     "give an angle from -1.047 to 1.047 rad (60 degrees)"
                 );
             move_arm(
-                Motion::moving_to_angle, command.angle_rad * Eigen::Vector2d::UnitX(), kDisplaceStiffness
+                Motion::moving_to_angle,
+                command.angle_rad * Eigen::Vector2d::UnitX(),
+                kDisplaceStiffness
             );
             return {};
         case Action::hold:
@@ -95,7 +94,9 @@ Result<void> ActuatedPendulum::apply(const Command& command) {
             motion_start_s_ = t_s_;
             return {};
     }
-    return fail(ErrorCode::invalid_argument, "action", "is unknown", "stop, displace, hold, release");
+    return fail(
+        ErrorCode::invalid_argument, "action", "is unknown", "stop, displace, hold, release"
+    );
 }
 
 void ActuatedPendulum::advance_to(double t_s) {
@@ -119,8 +120,7 @@ Truth ActuatedPendulum::truth() const {
         motion_,
         polar_of(state_.n).angle,
         pivot_lab_ + parameters_.length_m * state_.n,
-        parameters_.length_m * state_.n_dot
-    };
+        parameters_.length_m * state_.n_dot};
 }
 
 void ActuatedPendulum::move_arm(Motion motion, const Eigen::Vector2d& target, double stiffness) {

@@ -24,7 +24,7 @@ struct Command {
 struct Truth {
     double t_s = 0.0;  ///< since the rig was switched on
     Motion motion = Motion::at_rest;
-    double angle_rad = 0.0;                           ///< between string and vertical, never negative
+    double angle_rad = 0.0;  ///< between string and vertical, never negative
     Eigen::Vector3d p_lab = Eigen::Vector3d::Zero();  ///< bob's centre, m
     Eigen::Vector3d v_lab = Eigen::Vector3d::Zero();  ///< m/s
 };
@@ -32,7 +32,7 @@ struct Truth {
 /// A pendulum with an arm that brings the bob somewhere and an electromagnet that holds it.
 /// A value: copies go on independently.
 class ActuatedPendulum {
-  public:
+public:
     /// `pivot_lab` is where the string hangs. The parameters have passed check().
     ActuatedPendulum(const PendulumParameters& parameters, const Eigen::Vector3d& pivot_lab);
 
@@ -45,7 +45,7 @@ class ActuatedPendulum {
 
     [[nodiscard]] Truth truth() const;
 
-  private:
+private:
     /// The arm's path as a rotation vector of the string, critically damped towards its target.
     struct ArmPath {
         Eigen::Vector2d target = Eigen::Vector2d::Zero();  ///< rad

@@ -8,7 +8,7 @@ namespace kinectlab::simulate {
 namespace {
 
 constexpr double kEarthRate = 7.2921159e-5;  ///< rad/s, against the stars
-constexpr double kStep = 1.0 / 1024.0;       ///< s; phase error (ωh)⁴/120, below 1e-11 for L = 0.2 m
+constexpr double kStep = 1.0 / 1024.0;  ///< s; phase error (ωh)⁴/120, below 1e-11 for L = 0.2 m
 
 Result<void> check_range(const char* field, double value, double low, double high) {
     if (value >= low && value <= high) return {};
@@ -31,7 +31,7 @@ Result<void> check(const PendulumParameters& p) {
     return check_range("damping_per_s", p.damping_per_s, 0.0, 1.0);
 }
 
-PendulumEquation::PendulumEquation(const PendulumParameters& p): damping_(p.damping_per_s) {
+PendulumEquation::PendulumEquation(const PendulumParameters& p) : damping_(p.damping_per_s) {
     const double length = p.length_m;
     const double kappa = length / (length * length + 0.4 * p.bob_radius_m * p.bob_radius_m);
     const double latitude = p.latitude_deg * std::numbers::pi / 180.0;
@@ -40,7 +40,8 @@ PendulumEquation::PendulumEquation(const PendulumParameters& p): damping_(p.damp
 }
 
 Eigen::Vector3d PendulumEquation::acceleration(const SwingState& s) const {
-    const Eigen::Vector3d pull = gravity_ - 2.0 * earth_rate_.cross(s.n_dot) - 2.0 * damping_ * s.n_dot;
+    const Eigen::Vector3d pull =
+        gravity_ - 2.0 * earth_rate_.cross(s.n_dot) - 2.0 * damping_ * s.n_dot;
     return pull - (s.n.dot(pull) + s.n_dot.squaredNorm()) * s.n;
 }
 
@@ -48,7 +49,9 @@ SwingState PendulumEquation::step(const SwingState& s, double dt) const {
     const auto moved = [](const SwingState& from, const SwingState& slope, double h) {
         return SwingState{from.n + h * slope.n, from.n_dot + h * slope.n_dot};
     };
-    const auto slope = [this](const SwingState& at) { return SwingState{at.n_dot, acceleration(at)}; };
+    const auto slope = [this](const SwingState& at) {
+        return SwingState{at.n_dot, acceleration(at)};
+    };
     const SwingState k1 = slope(s);
     const SwingState k2 = slope(moved(s, k1, 0.5 * dt));
     const SwingState k3 = slope(moved(s, k2, 0.5 * dt));

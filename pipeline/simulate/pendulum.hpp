@@ -20,7 +20,7 @@ struct PendulumParameters {
 
 /// Where the string points and how fast that changes, in the lab frame. |n| = 1 and n·n_dot = 0.
 struct SwingState {
-    Eigen::Vector3d n = -Eigen::Vector3d::UnitZ();     ///< from the pivot to the bob's centre
+    Eigen::Vector3d n = -Eigen::Vector3d::UnitZ();    ///< from the pivot to the bob's centre
     Eigen::Vector3d n_dot = Eigen::Vector3d::Zero();  ///< 1/s
 };
 
@@ -29,10 +29,10 @@ struct SwingState {
 ///   n'' = -|n'|² n + [κ g - 2 Ω×n' - 2 γ n'] without its part along n
 ///
 /// κ = L/(L² + 2r²/5): the bob's own inertia 2/5 m r² turns with the string. Ω is the Earth's
-/// turning; Lagrange's equation of the extended bob gives the Coriolis term the same inertia on both
-/// sides, so it bears no κ. The centrifugal term is part of g, as everywhere on Earth.
+/// turning; Lagrange's equation of the extended bob gives the Coriolis term the same inertia on
+/// both sides, so it bears no κ. The centrifugal term is part of g, as everywhere on Earth.
 class PendulumEquation {
-  public:
+public:
     explicit PendulumEquation(const PendulumParameters& parameters);
 
     [[nodiscard]] Eigen::Vector3d acceleration(const SwingState& state) const;
@@ -43,7 +43,7 @@ class PendulumEquation {
     /// Kinetic and potential energy over (mL² + 2/5 m r²), 1/s²; constant without damping.
     [[nodiscard]] double energy(const SwingState& state) const;
 
-  private:
+private:
     Eigen::Vector3d gravity_;     ///< κ g, 1/s²
     Eigen::Vector3d earth_rate_;  ///< rad/s
     double damping_;
@@ -52,13 +52,13 @@ class PendulumEquation {
 /// A free swing. Steps lie on a fixed grid that begins at the release, so that the motion does not
 /// depend on how often it is asked for.
 class Swing {
-  public:
+public:
     Swing(const PendulumParameters& parameters, const SwingState& start);
 
     /// State `t_s` after the start; times must not decrease from call to call.
     [[nodiscard]] SwingState at(double t_s);
 
-  private:
+private:
     PendulumEquation equation_;
     SwingState grid_state_;
     std::int64_t grid_steps_ = 0;

@@ -1,8 +1,9 @@
 #pragma once
 
-#include <Eigen/Geometry>
 #include <array>
 #include <limits>
+
+#include <Eigen/Geometry>
 
 #include "pipeline/core/camera.hpp"
 
@@ -29,7 +30,8 @@ constexpr double kStringRadius = 0.001;
 enum class Material { none, wall, floor, table, table_leg, cabinet, mount, bob, string };
 
 struct Hit {
-    double t = std::numeric_limits<double>::infinity();  ///< along the ray, in lengths of its direction
+    double t =
+        std::numeric_limits<double>::infinity();  ///< along the ray, in lengths of its direction
     Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();
     Material material = Material::none;
 };
@@ -41,16 +43,16 @@ struct Box {
 
 /// Everything that stands still.
 class Room {
-  public:
+public:
     explicit Room(double pivot_height_m);
 
     /// Nearest surface in front of `origin`; Material::none if there is none.
     [[nodiscard]] Hit cast(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction) const;
 
-    /// True if anything stands between the two points.
+    /// True if furniture stands between the two points; the thin mount does not count.
     [[nodiscard]] bool hides(const Eigen::Vector3d& from, const Eigen::Vector3d& to) const;
 
-  private:
+private:
     std::array<Box, 8> boxes_;
 };
 

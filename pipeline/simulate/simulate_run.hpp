@@ -17,9 +17,9 @@ struct RunSettings {
 };
 
 struct RunSummary {
-    std::uint64_t frames = 0;         ///< in all
+    std::uint64_t frames = 0;          ///< in all
     std::uint64_t first_swinging = 0;  ///< index of the first frame after the release
-    double release_s = 0.0;           ///< after the first frame
+    double release_s = 0.0;            ///< after the first frame
 };
 
 /// Receives every frame with its truth; an error stops the run and is handed on.

@@ -2,29 +2,21 @@
 
 #include <cstdint>
 #include <memory>
-#include <string_view>
 
 #include "pipeline/core/camera.hpp"
 #include "pipeline/core/error.hpp"
 #include "pipeline/core/frame.hpp"
 #include "pipeline/simulate/actuated_pendulum.hpp"
+#include "pipeline/simulate/noise_model.hpp"
 #include "pipeline/simulate/scene.hpp"
 
 namespace kinectlab::simulate {
 
-enum class NoiseModel {
-    none,        ///< exact depth, rounded to millimetres
-    khoshelham,  ///< d' ← round(d' + N(0, 0.5)) in every pixel for itself: the known noise of the bounds
-    kinect,      ///< also coupled neighbours, ragged edges, projector shadow, holes
-};
-
-/// "none", "khoshelham" or "kinect"; anything else is an error of the field "noise".
-[[nodiscard]] Result<NoiseModel> noise_model_named(std::string_view name);
-
 struct RigSettings {
     PendulumParameters pendulum;
     NoiseModel noise = NoiseModel::kinect;
-    std::uint64_t seed = 1;  ///< the same seed gives the same frames, whichever of them are rendered
+    std::uint64_t seed =
+        1;  ///< the same seed gives the same frames, whichever of them are rendered
     CameraPlacement camera;
     bool with_colour = true;  ///< false leaves RgbdFrame::rgb empty and saves its time
     TimeNs start = 0;         ///< the rig's time 0 in UTC
@@ -35,7 +27,7 @@ constexpr double kFrameRateHz = 30.0;
 /// A Foucault pendulum, its laboratory and the Kinect that watches it. Time is what advance_to()
 /// says, never a clock. Not thread-safe: one thread owns a rig.
 class SimulatedRig {
-  public:
+public:
     [[nodiscard]] static Result<SimulatedRig> create(const RigSettings& settings);
 
     SimulatedRig(SimulatedRig&&) noexcept;
@@ -56,7 +48,7 @@ class SimulatedRig {
     [[nodiscard]] const RgbdCamera& camera() const;
     [[nodiscard]] const Eigen::Isometry3d& T_lab_cam() const;  ///< of the depth camera
 
-  private:
+private:
     struct State;
     explicit SimulatedRig(std::unique_ptr<State> state);
     std::unique_ptr<State> state_;

@@ -8,23 +8,14 @@
 
 #include "pipeline/core/error.hpp"
 #include "server/bus/bus.hpp"
+#include "server/experiments/definition.hpp"
 #include "server/lab/people.hpp"
 #include "server/lab/rig.hpp"
 #include "server/lab/run.hpp"
+#include "server/rig/rig_settings.hpp"
 #include "server/store/store.hpp"
 
-namespace kinectlab::experiments {
-class Catalogue;
-}
-
 namespace kinectlab::rig {
-
-struct RigSettings {
-    std::string id;    ///< in URLs: "rig-1"
-    std::string name;  ///< for people
-    std::string uri;   ///< of the device, e.g. "sim://rig-1?seed=1"
-    std::vector<std::string> experiments{"pendulum"};
-};
 
 struct RunRequest {
     std::string rig;
@@ -36,10 +27,10 @@ struct RunRequest {
 class RigService {
 public:
     /// Marks runs that a crash left open as interrupted, then starts one worker for each rig. A rig
-    /// whose device is not there is offline, and tried again. The references must outlive it.
+    /// whose device is not there is offline, and tried again. Store and bus must outlive it.
     RigService(
-        std::vector<RigSettings> rigs,
-        const experiments::Catalogue& catalogue,
+        const std::vector<RigSettings>& rigs,
+        std::vector<experiments::Definition> definitions,
         store::Store& store,
         bus::Bus& bus
     );

@@ -40,8 +40,11 @@ public:
     /// Newest first.
     [[nodiscard]] std::vector<lab::Run> list(const RunFilter& filter);
     [[nodiscard]] std::vector<lab::RunChange> history(lab::RunId id);
-    /// For the start of the server: what a crash left open becomes interrupted; poses are kept.
-    std::vector<lab::RunId> interrupt_unfinished(TimeNs now, const std::string& reason);
+    /// For the start of the server: what a crash left open (on one rig, or on all) becomes
+    /// interrupted; poses are kept. Returns which.
+    std::vector<lab::RunId> interrupt_unfinished(
+        TimeNs now, const std::string& reason, const std::optional<std::string>& rig = {}
+    );
 
 private:
     Database& database_;
