@@ -13,8 +13,9 @@
 namespace kinectlab {
 namespace {
 
-constexpr int kMostPixels = 4096;  // more would not be felt in the result: a grid of every 2nd, …
-constexpr double kMargin = 1.4;    // of the radius: the window shows what surrounds the sphere
+constexpr int kMostPixels = 16384;  // more would not be felt in the result: a grid of every 2nd, …
+constexpr double kMargin = 1.3;     // of the radius: the window shows what surrounds the sphere
+constexpr double kRing = 1.1;       // of the radius: what lies beyond is not the sphere
 constexpr double kMinCosine = 0.25;  // rays that graze more see flying pixels and the background
 constexpr int kMaxIterations = 10;
 constexpr double kSettled_m = 2e-6;  // a smaller step changes nothing that the noise would show
@@ -44,17 +45,19 @@ struct Point {
 /// Residual, Tukey's weight and the slopes of every pixel. From the implicit equation of meet():
 /// dw/dc = (w d - w² c)/root and dw/dr = w² r/root. The root is found from the cross product,
 /// root² = r² d·d - |d x c|², which loses no digits in single precision.
-KINECTLAB_HOT_LOOP void linearise(const Pixels& pixels, const Point& at) {
-    const float* __restrict xs = pixels.x;
-    const float* __restrict ys = pixels.y;
-    const float* __restrict ss = pixels.s;
-    float* __restrict weights = pixels.weight;
-    float* __restrict residuals = pixels.residual;
-    float* __restrict by_x = pixels.slope[0];
-    float* __restrict by_y = pixels.slope[1];
-    float* __restrict by_z = pixels.slope[2];
-    float* __restrict by_r = pixels.slope[3];
+KINECTLAB_HOT_LOOP void linearise(const Pixels& pixels, const Point& point) {
+    const Point at = point;
+    const float* xs = pixels.x;
+    const float* ys = pixels.y;
+    const float* ss = pixels.s;
+    float* weights = pixels.weight;
+    float* residuals = pixels.residual;
+    float* by_x = pixels.slope[0];
+    float* by_y = pixels.slope[1];
+    float* by_z = pixels.slope[2];
+    float* by_r = pixels.slope[3];
     constexpr auto kLeastRoot2 = static_cast<float>(kMinCosine * kMinCosine);
+#pragma GCC ivdep  // the arrays are all different ones
     for (std::size_t i = 0; i < pixels.size; ++i) {
         const float x = xs[i], y = ys[i], s = ss[i];
         const float d2 = x * x + y * y + 1.0F;
@@ -278,7 +281,7 @@ void SphereFitter::assess(SphereFit& fit, double sigma) const {
             if (std::abs(e) > kLastGateSigmas * sigma) continue;
             ++inliers;
             squares += e * e;
-        } else if (miss2 > 1.15 * 1.15 * r2 && miss2 < kMargin * kMargin * r2) {
+        } else if (miss2 > kRing * kRing * r2 && miss2 < kMargin * kMargin * r2) {
             ++around;
             const double z = s_[i] == 0.0F ? 0.0 : scale_.metres(s_[i]);
             const double behind = z - sphere.centre_cam.z();
