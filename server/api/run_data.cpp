@@ -11,6 +11,15 @@ namespace {
 
 using nlohmann::json;
 
+std::string to_csv(const std::vector<Trajectory>& trajectories) {
+    std::string csv = experiments::poses_csv_header();
+    for (const Trajectory& trajectory : trajectories) {
+        for (const MotionSample& sample : trajectory.samples)
+            experiments::append_pose_row(csv, trajectory.object, sample);
+    }
+    return csv;
+}
+
 TimeNs zero_of(const lab::Run& run) {
     return run.started.value_or(run.created);
 }
@@ -36,7 +45,7 @@ net::Response get_poses_csv(const Call& call) {
     return {
         200,
         "text/csv; charset=utf-8",
-        experiments::poses_csv(call.context.store.poses.of_run(run.id)),
+        to_csv(call.context.store.poses.of_run(run.id)),
         {{"Content-Disposition", "attachment; filename=\"" + name + "\""},
          {"Cache-Control", "no-store"}}};
 }

@@ -2,6 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "server/experiments/poses_csv.hpp"
 #include "server/lab/permissions.hpp"
 #include "server/lab/utc.hpp"
 
@@ -12,18 +13,6 @@ using nlohmann::json;
 
 json time_or_null(const std::optional<TimeNs>& time) {
     return time ? json(lab::to_rfc3339(*time)) : json(nullptr);
-}
-
-const char* status_text(TrackStatus status) {
-    switch (status) {
-        case TrackStatus::tracked:
-            return "tracked";
-        case TrackStatus::interpolated:
-            return "interpolated";
-        case TrackStatus::lost:
-            break;
-    }
-    return "lost";
 }
 
 /// Five decimals, 10 µm: below what any of our sensors resolves.
@@ -104,7 +93,7 @@ json columns_json(const Trajectory& trajectory, TimeNs zero) {
         columns[name] = json::array();
     for (const MotionSample& sample : trajectory.samples) {
         columns["t_s"].push_back(std::round(to_seconds(sample.t - zero) * 1e6) / 1e6);
-        columns["status"].push_back(status_text(sample.status));
+        columns["status"].push_back(experiments::to_text(sample.status));
         columns["x"].push_back(rounded(sample.p_lab.x()));
         columns["y"].push_back(rounded(sample.p_lab.y()));
         columns["z"].push_back(rounded(sample.p_lab.z()));
