@@ -21,8 +21,8 @@ export function groupParameters(parameters: Parameter[], simulated: boolean): Pa
 
 export function rangeText(p: Parameter): string {
   const low = Number.isFinite(p.min) ? formatQuantity(p.min, '1') : '';
-  const high = Number.isFinite(p.max) ? formatQuantity(p.max, p.unit) : '';
-  return low && high ? `From ${low} to ${high}.` : '';
+  const high = Number.isFinite(p.max) ? formatQuantity(p.max, '1') : '';
+  return low && high ? `${low} to ${high}` : '';
 }
 
 export interface ReadParameters {

@@ -10,8 +10,8 @@ export function viewerZone(): string {
 }
 
 /** `Europe/Berlin (CET)`: the zone by name, with the abbreviation that holds at that time. */
-export function zoneName(zone: string, at: number): string {
-  const part = new Intl.DateTimeFormat('en', { timeZone: zone, timeZoneName: 'short' })
+export function zoneName(zone: string, at: number, locale?: string): string {
+  const part = new Intl.DateTimeFormat(locale, { timeZone: zone, timeZoneName: 'short' })
     .formatToParts(at)
     .find((p) => p.type === 'timeZoneName')?.value;
   const place = zone.replaceAll('_', ' ');

@@ -9,7 +9,10 @@ export function axis(label: string, options: Partial<uPlot.Axis> = {}): uPlot.Ax
   return {
     label,
     labelFont: plotFont,
-    labelSize: 22,
+    labelSize: 20,
+    labelGap: 0,
+    size: 26,
+    gap: 4,
     font: plotFont,
     stroke: color('--text-soft'),
     grid: { stroke: color('--plot-grid'), width: 1 },

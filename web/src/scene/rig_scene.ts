@@ -2,7 +2,7 @@
  * changed. The only file that knows three.js; loaded when the scene is first shown. */
 import {
   AmbientLight, BufferAttribute, BufferGeometry, CircleGeometry, Color, CylinderGeometry, DirectionalLight, GridHelper, Line,
-  LineBasicMaterial, Mesh, MeshBasicMaterial, MeshStandardMaterial, PerspectiveCamera, Scene, SphereGeometry, Vector3, WebGLRenderer,
+  LineBasicMaterial, Mesh, MeshBasicMaterial, MeshStandardMaterial, PerspectiveCamera, Points, PointsMaterial, Scene, SphereGeometry, Vector3, WebGLRenderer,
 } from 'three';
 import { color } from '../plots/theme';
 import { viewpoint } from './geometry';
@@ -26,6 +26,8 @@ export class RigScene {
   private readonly string = new Mesh(new CylinderGeometry(0.003, 0.003, 1, 6), new MeshBasicMaterial());
   private readonly shade = new Mesh(new CircleGeometry(1, 32), new MeshBasicMaterial({ transparent: true, opacity: 0.22, depthWrite: false }));
   private readonly trail = new Line(new BufferGeometry(), new LineBasicMaterial({ vertexColors: true, transparent: true }));
+  /** A dot for each measured pose, on the same buffers as the line through them. */
+  private readonly dots = new Points(this.trail.geometry, new PointsMaterial({ size: 0.014, vertexColors: true, transparent: true, depthWrite: false }));
   private readonly frameMaterial = new MeshStandardMaterial({ roughness: 0.8 });
   private frame: Mesh[] = [];
   private grid: GridHelper | null = null;
@@ -39,12 +41,12 @@ export class RigScene {
     this.camera.up.set(0, 0, 1);
     const lamp = new DirectionalLight(0xffffff, 2.2);
     lamp.position.set(-1.5, -2, 3);
-    this.scene.add(new AmbientLight(0xffffff, 1.1), lamp, this.bob, this.string, this.shade, this.trail);
+    this.scene.add(new AmbientLight(0xffffff, 1.1), lamp, this.bob, this.string, this.shade, this.trail, this.dots);
     const geometry = this.trail.geometry;
     geometry.setAttribute('position', new BufferAttribute(new Float32Array(3 * trailPoints), 3));
     geometry.setAttribute('color', new BufferAttribute(new Float32Array(4 * trailPoints), 4));
     geometry.setDrawRange(0, 0);
-    this.trail.frustumCulled = false;
+    this.trail.frustumCulled = this.dots.frustumCulled = false;
     this.bob.visible = this.string.visible = this.shade.visible = false;
     this.setTheme();
   }
@@ -121,14 +123,14 @@ export class RigScene {
     this.dirty = false;
     const shape = this.shape ?? { length: 1, pivot: 0, bobRadius: 0.05 };
     const target: [number, number, number] = [0, 0, shape.pivot - 0.55 * shape.length];
-    this.camera.position.set(...viewpoint(target, this.azimuth, this.elevation, 1.1 + 1.75 * shape.length));
+    this.camera.position.set(...viewpoint(target, this.azimuth, this.elevation, 0.9 + 1.5 * shape.length));
     this.camera.lookAt(...target);
     this.renderer.render(this.scene, this.camera);
   }
 
   dispose(): void {
     this.scene.traverse((object) => {
-      if (!(object instanceof Mesh || object instanceof Line)) return;
+      if (!(object instanceof Mesh || object instanceof Line || object instanceof Points)) return;
       object.geometry.dispose();
       for (const material of [object.material].flat()) material.dispose();
     });
@@ -148,7 +150,7 @@ export class RigScene {
     }
     const floor = this.floor();
     const height = shape.pivot - floor;
-    const half = 0.25 + 0.5 * shape.length;
+    const half = 0.2 + 0.45 * shape.length;
     const post = (x: number) => {
       const mesh = new Mesh(new CylinderGeometry(0.014, 0.014, height, 12), this.frameMaterial);
       mesh.position.set(x, 0, floor + height / 2);
