@@ -1,3 +1,4 @@
+import { clockTime, dayName } from '../models/time';
 import type { FieldError, Problem, Slot } from './types';
 
 /** The server answered, and said no. `status` 0 means that it could not be reached at all. */
@@ -36,7 +37,9 @@ export function problemToError(status: number, body: unknown): ApiError {
   const problem: Problem = typeof body === 'object' && body !== null ? (body as Problem) : {};
   const errors = Array.isArray(problem.errors) ? problem.errors.filter(isFieldError) : [];
   const alternatives = Array.isArray(problem.alternatives) ? problem.alternatives.filter(isSlot) : [];
-  const message = problem.detail || fallback[status] || problem.title || `The laboratory answered with error ${status}. Try again.`;
+  // The detail is written for a terminal, `field: message; cure`; the parts read better.
+  const spoken = errors.map(withSubject).join(' ');
+  const message = spoken || problem.detail || fallback[status] || problem.title || `The laboratory answered with error ${status}. Try again.`;
   return new ApiError(status, asSentence(message), errors, alternatives);
 }
 
@@ -53,16 +56,31 @@ export function formMessage(error: unknown, fields: string[]): string | null {
   if (!error) return null;
   if (!(error instanceof ApiError)) return error instanceof Error ? error.message : String(error);
   const elsewhere = error.errors.filter((e) => !fields.includes(e.field));
-  if (error.errors.length > 0 && elsewhere.length === 0) return null;
-  return error.message;
+  if (error.errors.length === 0) return error.message;
+  return elsewhere.length > 0 ? elsewhere.map(withSubject).join(' ') : null;
+}
+
+/** At its field an error needs no subject; elsewhere “is busy” has to say who. */
+function withSubject(error: FieldError): string {
+  const name = error.field.slice(error.field.lastIndexOf('.') + 1);
+  const subject = name === 'user' ? 'Your account' : `The ${name.replaceAll('_', ' ')}`;
+  const lacksSubject = /^(is|was|has|holds|makes|contains|belongs) /.test(error.message);
+  const text = lacksSubject && name ? `${subject} ${error.message}` : error.message;
+  return asSentence(error.cure ? `${text}; ${error.cure}` : text);
 }
 
 function asSentence(text: string): string {
-  const trimmed = text.trim();
-  const upper = trimmed.charAt(0).toUpperCase() + trimmed.slice(1);
-  // Field names begin some details ("length_m: is 9"): those keep their spelling.
-  const start = /^[a-z_.]+:/.test(trimmed) ? trimmed : upper;
+  const trimmed = localTimes(text.trim());
+  const start = trimmed.charAt(0).toUpperCase() + trimmed.slice(1);
   return /[.!?]$/.test(start) ? start : `${start}.`;
+}
+
+/** The server speaks UTC; people read their own clock. */
+function localTimes(text: string): string {
+  return text.replace(/\d{4}-\d\d-\d\dT\d\d:\d\d(:\d\d(\.\d+)?)?Z/g, (stamp) => {
+    const at = Date.parse(stamp);
+    return `${clockTime(at)} ${dayName(at)}`;
+  });
 }
 
 function isFieldError(value: unknown): value is FieldError {

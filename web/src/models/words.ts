@@ -22,18 +22,15 @@ const quantityLabels: Record<string, string> = {
   small_angle_period: 'Period at a small angle',
   amplitude: 'Angle at the start',
   damping: 'Damping',
-  plane_rotation: 'Turning of the swing plane',
+  quality_factor: 'Quality factor',
+  turning_rate: 'Turning of the swing plane',
 };
 
 const sourceLabels: Record<string, string> = {
   statistics: 'Scatter of the measured points',
-  fit: 'Scatter of the measured points',
   length: 'Length of the pendulum',
-  length_u_m: 'Length of the pendulum',
   clock: 'Clock of the camera',
-  depth_scale: 'Depth scale of the camera',
   'depth scale': 'Depth scale of the camera',
-  bob_radius: 'Radius of the bob',
 };
 
 export const parameterLabel = (name: string): string => parameterLabels[name] ?? humanise(name);

@@ -8,7 +8,20 @@ it('shows an error at its field, with the cure', () => {
   expect(fieldMessage(error, 'parameters.length_m')).toBe('Is 9; give a number from 0.3 to 1.5.');
   expect(fieldMessage(error, 'parameters.gravity')).toBeNull();
   expect(formMessage(error, ['parameters.length_m'])).toBeNull();
-  expect(formMessage(error, ['parameters.gravity'])).toBe('length_m: is 9.');
+  expect(formMessage(error, ['parameters.gravity'])).toBe('The length m is 9; give a number from 0.3 to 1.5.');
+});
+
+it('says who or what, where no field does', () => {
+  const spoken = (field: string, message: string) => problemToError(409, { detail: `${field}: ${message}`, errors: [{ field, message, cure: 'wait' }] }).message;
+  expect(spoken('rig', 'is busy with another run')).toBe('The rig is busy with another run; wait.');
+  expect(spoken('user', 'holds 5 bookings')).toBe('Your account holds 5 bookings; wait.');
+  expect(spoken('start', 'the rig is taken')).toBe('The rig is taken; wait.');
+});
+
+it('tells times on the viewer’s clock', () => {
+  const error = problemToError(403, { detail: 'the slot begins at 2020-06-01T09:00:00Z' });
+  expect(error.message).not.toContain('2020-06-01T');
+  expect(error.message).toMatch(/\d\d:00 .*1/);
 });
 
 it('keeps the alternatives of a conflict, and drops what is malformed', () => {

@@ -23,6 +23,8 @@ it('takes the scatter of what was measured', () => {
 
 it('lays nested provenance out flat', () => {
   expect(facts({ program: 'kinectlab 0.1', device: { uri: 'sim://1', none: null }, seeds: [1, 2] })).toEqual([
-    { label: 'Program', value: 'kinectlab 0.1' }, { label: 'Device, uri', value: 'sim://1' }, { label: 'Seeds', value: '1, 2' },
+    { label: 'Program', value: 'kinectlab 0.1', depth: 0 },
+    { label: 'Device, uri', value: 'sim://1', depth: 1 },
+    { label: 'Seeds', value: '1, 2', depth: 0 },
   ]);
 });
