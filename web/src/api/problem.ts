@@ -1,4 +1,5 @@
 import { clockTime, dayName } from '../models/time';
+import { parameterLabel } from '../models/words';
 import type { FieldError, Problem, Slot } from './types';
 
 /** The server answered, and said no. `status` 0 means that it could not be reached at all. */
@@ -63,7 +64,8 @@ export function formMessage(error: unknown, fields: string[]): string | null {
 /** At its field an error needs no subject; elsewhere “is busy” has to say who. */
 function withSubject(error: FieldError): string {
   const name = error.field.slice(error.field.lastIndexOf('.') + 1);
-  const subject = name === 'user' ? 'Your account' : `The ${name.replaceAll('_', ' ')}`;
+  const plain = name === 'user' ? 'Your account' : `The ${name.replaceAll('_', ' ')}`;
+  const subject = error.field.startsWith('parameters.') ? parameterLabel(name) : plain;
   const lacksSubject = /^(is|was|has|holds|makes|contains|belongs) /.test(error.message);
   const text = lacksSubject && name ? `${subject} ${error.message}` : error.message;
   return asSentence(error.cure ? `${text}; ${error.cure}` : text);
