@@ -1,12 +1,13 @@
 import { svelte } from '@sveltejs/vite-plugin-svelte';
 import { loadEnv } from 'vite';
 import { defineConfig } from 'vitest/config';
+import { precompress } from './precompress';
 
 /** Where `npm run dev` finds the laboratory's server. */
 const server = loadEnv('', '.', 'KINECTLAB_')['KINECTLAB_SERVER'] ?? 'http://localhost:8080';
 
 export default defineConfig({
-  plugins: [svelte()],
+  plugins: [svelte(), precompress()],
   build: {
     target: 'es2022',
     // A data: address would need an exception in the content security policy.
