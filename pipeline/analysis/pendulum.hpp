@@ -10,12 +10,12 @@
 namespace kinectlab {
 
 struct PendulumSettings {
-    double length_m = 1.0;         ///< pivot to the bob's centre
-    double length_u_m = 0.0005;    ///< its standard uncertainty
-    double bob_radius_m = 0.05;    ///< solid sphere that turns with the string; 0 = a point
-    double latitude_deg = 45.0;    ///< of the rig, for the turning of the swing plane
-    double depth_scale_u = 1e-3;   ///< relative
-    double clock_u = 2e-5;         ///< relative
+    double length_m = 1.0;        ///< pivot to the bob's centre
+    double length_u_m = 0.0005;   ///< its standard uncertainty
+    double bob_radius_m = 0.05;   ///< solid sphere that turns with the string; 0 = a point
+    double latitude_deg = 45.0;   ///< of the rig, for the turning of the swing plane
+    double depth_scale_u = 1e-3;  ///< relative
+    double clock_u = 2e-5;        ///< relative
 };
 
 /// The fitted motion at the samples' times, for plots.

@@ -1,0 +1,87 @@
+#include "pipeline/analysis/pendulum.hpp"
+
+#include <cmath>
+#include <limits>
+
+#include <fmt/format.h>
+
+#include "pipeline/analysis/swing_fit.hpp"
+#include "pipeline/analysis/swing_guess.hpp"
+#include "pipeline/analysis/swing_measurements.hpp"
+#include "pipeline/analysis/swing_samples.hpp"
+#include "pipeline/analysis/swing_warnings.hpp"
+
+namespace kinectlab {
+namespace {
+
+Result<void> check(const PendulumSettings& s) {
+    const auto in_range =
+        [](const char* field, double value, double low, double high, const char* unit
+        ) -> Result<void> {
+        if (value >= low && value <= high) return {};
+        return fail(
+            ErrorCode::invalid_argument,
+            field,
+            fmt::format("is {}", value),
+            fmt::format("give a number from {} to {}{}", low, high, unit)
+        );
+    };
+    if (auto ok = in_range("length_m", s.length_m, 0.05, 100.0, " m"); !ok) return ok;
+    if (auto ok = in_range("length_u_m", s.length_u_m, 0.0, 0.1 * s.length_m, " m"); !ok) return ok;
+    if (auto ok = in_range("bob_radius_m", s.bob_radius_m, 0.0, s.length_m, " m"); !ok) return ok;
+    if (auto ok = in_range("latitude_deg", s.latitude_deg, -90.0, 90.0, "°"); !ok) return ok;
+    if (auto ok = in_range("depth_scale_u", s.depth_scale_u, 0.0, 0.2, ""); !ok) return ok;
+    return in_range("clock_u", s.clock_u, 0.0, 0.2, "");
+}
+
+PendulumFit for_plots(
+    const Trajectory& trajectory, const std::vector<SwingSample>& samples, const SwingFit& fit
+) {
+    constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+    PendulumFit plot;
+    const std::size_t first = samples[fit.begin].index;
+    const std::size_t last = samples[fit.end - 1].index;
+    SwingPath path(fit.parameters);
+    for (std::size_t i = 0; i < trajectory.samples.size(); ++i) {
+        const MotionSample& sample = trajectory.samples[i];
+        Eigen::Vector3d measured = Eigen::Vector3d::Constant(kNan);
+        Eigen::Vector3d fitted = Eigen::Vector3d::Constant(kNan);
+        if (sample.status == TrackStatus::tracked) measured = sample.p_lab;
+        if (i >= first && i <= last) {
+            path.go_to(to_seconds(sample.t - trajectory.samples[first].t));
+            fitted = path.position();
+        }
+        plot.t.push_back(sample.t);
+        plot.p_lab.push_back(measured);
+        plot.fit_lab.push_back(fitted);
+        plot.residual.emplace_back(measured - fitted);
+    }
+    for (const bool used : fit.used)
+        ++(used ? plot.used : plot.outliers);
+    plot.reduced_chi2 = fit.reduced_chi2;
+    return plot;
+}
+
+}  // namespace
+
+Result<PendulumResult> analyse_pendulum(
+    const Trajectory& trajectory, const PendulumSettings& settings
+) {
+    if (auto ok = check(settings); !ok) return tl::unexpected(ok.error());
+    const auto samples = collect_swing_samples(trajectory);
+    if (!samples) return tl::unexpected(samples.error());
+    auto guess = guess_swing(*samples, settings.length_m);
+    if (!guess) return tl::unexpected(guess.error());
+    guess->parameters.turning = earth_turning(settings.latitude_deg);
+    const auto fit = fit_swing(*samples, *guess, swing_priors(settings));
+    if (!fit) return tl::unexpected(fit.error());
+
+    PendulumResult result;
+    const double duration = (*samples)[fit->end - 1].t - (*samples)[fit->begin].t;
+    result.measurements = swing_measurements(*fit, settings, duration);
+    result.fit = for_plots(trajectory, *samples, *fit);
+    result.warnings = swing_warnings(*samples, *fit, result.measurements, settings);
+    return result;
+}
+
+}  // namespace kinectlab

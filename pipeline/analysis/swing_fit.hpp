@@ -1,0 +1,50 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "pipeline/analysis/least_squares.hpp"
+#include "pipeline/analysis/swing_guess.hpp"
+#include "pipeline/analysis/swing_model.hpp"
+#include "pipeline/analysis/swing_samples.hpp"
+
+namespace kinectlab {
+
+/// The least-squares fit to a free swing.
+struct SwingFit {
+    SwingParameters parameters;  ///< time 0 is that of sample `begin`
+    std::size_t begin = 0;       ///< the free swing: samples [begin, end)
+    std::size_t end = 0;
+    double free_radius = 0.0;  ///< of the arc, from the positions alone, m
+    double free_radius_u = 0.0;
+    double free_turning = 0.0;  ///< of the swing plane beyond what its ellipse does, rad/s
+    double free_turning_u = 0.0;
+    std::vector<bool> used;                  ///< of the samples [begin, end): false = outlier
+    std::vector<Eigen::Vector3d> residuals;  ///< of the samples [begin, end), m
+    double reduced_chi2 = 0.0;  ///< of the used ones, against the covariances they came with
+
+    // Where the covariance of the parameters (turning held fixed) comes from; they add up.
+    SwingMatrix from_noise;  ///< of the positions, its correlation in time taken in
+    SwingMatrix from_tilt;   ///< the lab frame's level
+    SwingVector by_radius;   ///< change of the parameters for each metre of the prior radius
+};
+
+/// Fits all parameters but the Earth's turning to all samples of the free swing that the guess lies
+/// in. Grows outward from the guess until the samples stop following the equation of motion (held,
+/// not yet released, stopped), robust at first (Huber), then by plain least squares without the
+/// outliers beyond 4.5 sigma. The noise is rescaled by what the residuals show in each direction,
+/// and its covariance takes in their correlation in time (Newey and West, Econometrica 55 (1987)).
+/// Errors (bad_data): less than three periods of free swing, motion that the equation cannot
+/// follow, amplitude beyond 80°.
+[[nodiscard]] Result<SwingFit> fit_swing(
+    std::span<const SwingSample> samples, const SwingGuess& guess, const SwingPriors& priors
+);
+
+/// The largest angle from the plumb line that the bob would reach from the parameters' time 0 on
+/// without damping, rad.
+[[nodiscard]] double turning_angle(const SwingParameters& parameters);
+
+/// The amplitude of a plane swing with the same energy, rad. Its square counts for the period.
+[[nodiscard]] double energy_angle(const SwingParameters& parameters);
+
+}  // namespace kinectlab

@@ -1,0 +1,24 @@
+#pragma once
+
+#include <span>
+
+#include "pipeline/analysis/swing_model.hpp"
+#include "pipeline/analysis/swing_samples.hpp"
+
+namespace kinectlab {
+
+/// Three periods in which the bob surely swings freely, and roughly how.
+struct SwingGuess {
+    std::size_t begin = 0;  ///< samples [begin, end)
+    std::size_t end = 0;
+    double period = 0.0;         ///< s
+    SwingParameters parameters;  ///< time 0 is that of sample `begin`
+};
+
+/// Finds the period by a least-squares spectrum of the velocities, which rest and gaps do not
+/// mislead, and the three periods that look most like a sine.
+/// Errors (bad_data): no motion beyond noise, less than three periods, nothing like a swing, a bob
+/// farther than sin 80° of the length from the middle.
+[[nodiscard]] Result<SwingGuess> guess_swing(std::span<const SwingSample> samples, double length_m);
+
+}  // namespace kinectlab

@@ -1,0 +1,124 @@
+#include "pipeline/analysis/swing_warnings.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include <fmt/format.h>
+
+#include "pipeline/analysis/swing_measurements.hpp"
+
+namespace kinectlab {
+namespace {
+
+constexpr double kDegree = std::numbers::pi / 180.0;
+
+double value(const std::vector<Measurement>& all, std::string_view name) {
+    const auto it =
+        std::find_if(all.begin(), all.end(), [&](const auto& m) { return m.name == name; });
+    return it == all.end() ? std::nan("") : it->value;
+}
+
+}  // namespace
+
+std::vector<std::string> swing_warnings(
+    std::span<const SwingSample> samples,
+    const SwingFit& fit,
+    const std::vector<Measurement>& measurements,
+    const PendulumSettings& settings
+) {
+    std::vector<std::string> warnings;
+    const SwingSample& first = samples[fit.begin];
+    const SwingSample& last = samples[fit.end - 1];
+    const double periods = (last.t - first.t) / value(measurements, "period");
+    const double left_out_before = first.t - samples.front().t;
+    const double left_out_after = samples.back().t - last.t;
+    if (left_out_before > 0.0)
+        warnings.push_back(fmt::format(
+            "The first {:.1f} s were not a free swing and were left out.", left_out_before
+        ));
+    if (left_out_after > 0.0)
+        warnings.push_back(fmt::format(
+            "The last {:.1f} s were not a free swing and were left out.", left_out_after
+        ));
+    if (periods < 10.0)
+        warnings.push_back(fmt::format(
+            "Only {:.1f} periods were recorded; ten or more give a much better g.", periods
+        ));
+
+    std::vector<double> off;
+    for (const auto& r : fit.residuals)
+        off.push_back(r.norm());
+    std::nth_element(
+        off.begin(), off.begin() + static_cast<std::ptrdiff_t>(off.size() / 2), off.end()
+    );
+    const double noise = off[off.size() / 2];
+    const double amplitude = value(measurements, "amplitude");
+    const double path = settings.length_m * std::sin(amplitude);
+    if (path < 20.0 * noise)
+        warnings.push_back(fmt::format(
+            "The swing of {:.1f} mm to each side is small against the positions' noise of {:.1f} "
+            "mm; release it from a larger angle.",
+            path * 1e3,
+            noise * 1e3
+        ));
+
+    const auto frames = static_cast<double>(last.index - first.index + 1);
+    const double missing = 1.0 - static_cast<double>(fit.end - fit.begin) / frames;
+    if (missing > 0.2)
+        warnings.push_back(fmt::format(
+            "The bob was not seen in {:.0f} % of the frames of the swing.", missing * 100.0
+        ));
+    const auto outliers = std::count(fit.used.begin(), fit.used.end(), false);
+    if (static_cast<double>(outliers) > 0.05 * static_cast<double>(fit.used.size()))
+        warnings.push_back(fmt::format(
+            "{} of {} positions lie far off the swing and were left out; was something else in the "
+            "picture?",
+            outliers,
+            fit.used.size()
+        ));
+    if (fit.reduced_chi2 > 2.0)
+        warnings.push_back(fmt::format(
+            "The positions scatter {:.1f} times as much about the fit as the tracker expects "
+            "(reduced chi² {:.1f}); "
+            "the uncertainties take this in, but look at the residuals.",
+            std::sqrt(fit.reduced_chi2),
+            fit.reduced_chi2
+        ));
+
+    const double radius_off = std::abs(fit.free_radius - settings.length_m);
+    const double radius_u = std::hypot(fit.free_radius_u, swing_priors(settings).radius_sigma);
+    if (radius_off > 4.0 * radius_u && radius_off > 0.03 * settings.length_m)
+        warnings.push_back(fmt::format(
+            "The arc's radius is {:.2f} m but length_m says {:.2f} m; g rests on length_m.",
+            fit.free_radius,
+            settings.length_m
+        ));
+    if (fit.parameters.tilt.norm() > 2.0 * kDegree)
+        warnings.push_back(fmt::format(
+            "The swing's plumb line is {:.1f}° off the lab's vertical; is the camera's place set "
+            "right?",
+            fit.parameters.tilt.norm() / kDegree
+        ));
+    const double g = value(measurements, "g");
+    const double g_u = measurements.front().u;
+    if (g < 9.76 - 4.0 * g_u || g > 9.84 + 4.0 * g_u)
+        warnings.push_back(fmt::format(
+            "g = {:.3f} m/s² is not found on the Earth's ground (9.76 to 9.84 m/s²); is length_m "
+            "right?",
+            g
+        ));
+    if (value(measurements, "damping") < -4.0 * measurements[4].u)
+        warnings.emplace_back("The swing grew by itself; something pushes the pendulum.");
+    const double earth = earth_turning(settings.latitude_deg);
+    if (std::abs(fit.free_turning - earth) > 5.0 * fit.free_turning_u)
+        warnings.push_back(fmt::format(
+            "The swing's plane turns by {:.0f} °/h, the Earth would turn it by {:.0f} °/h; the "
+            "suspension may favour a direction.",
+            -fit.free_turning / kDegree * 3600.0,
+            -earth / kDegree * 3600.0
+        ));
+    return warnings;
+}
+
+}  // namespace kinectlab
