@@ -29,7 +29,7 @@ enum class FrameStatus {
 
 /// Where frames come from. Not thread-safe: one thread owns a source.
 class FrameSource {
-  public:
+public:
     FrameSource() = default;
     FrameSource(const FrameSource&) = delete;
     FrameSource& operator=(const FrameSource&) = delete;

@@ -10,14 +10,14 @@
 namespace kinectlab {
 
 struct OpenniSettings {
-    std::string uri;         ///< as OpenNI2 lists it, e.g. "sim://rig-1?seed=7"; empty: any device
-    bool with_colour = true; ///< also stream colour, paired with depth by time
+    std::string uri;          ///< as OpenNI2 lists it, e.g. "sim://rig-1?seed=7"; empty: any device
+    bool with_colour = true;  ///< also stream colour, paired with depth by time
 };
 
 /// A live device through OpenNI2. Disconnection is noticed, and the device is reopened when it is
 /// back. One thread calls next(); set_property and get_property may be called from another.
 class OpenniSource : public FrameSource {
-  public:
+public:
     /// Error `unavailable` names the URI and lists the devices that are there.
     [[nodiscard]] static Result<std::unique_ptr<OpenniSource>> open(const OpenniSettings& settings);
 

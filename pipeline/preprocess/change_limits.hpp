@@ -1,0 +1,40 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "pipeline/core/disparity.hpp"
+#include "pipeline/preprocess/reference.hpp"
+
+namespace kinectlab {
+
+/// Reference scene, noise and depth cut folded into one number a pixel, so that one comparison
+/// tells whether something moved in front of it: changed if and only if 0 < depth < limit.
+/// Stored less one, because then `depth - 1 < reach` in 16 bits is all of it (0 - 1 = 65535).
+class ChangeLimits {
+public:
+    ChangeLimits(const RgbdCamera& camera, double threshold_steps);
+
+    /// All rows, and the depth cut anew.
+    void rebuild(const ReferenceScene& reference);
+    /// Some rows after the reference followed the scene there; the cut and each pixel's noise stay.
+    void update(const ReferenceScene& reference, RowRange rows);
+
+    [[nodiscard]] std::span<const std::uint16_t> reach() const { return reach_; }
+    [[nodiscard]] std::optional<double> cut_steps() const { return cut_steps_; }
+
+private:
+    void nearest_row(const ReferenceScene& reference, int row, std::span<float> nearest);
+    void fill_holes(std::span<float> row) const;
+
+    int width_, height_;
+    DisparityScale scale_;
+    float threshold_steps_;
+    std::optional<double> cut_steps_;
+    std::vector<std::uint16_t> reach_;
+    std::vector<float> slack_, nearest_rows_, filled_;
+};
+
+}  // namespace kinectlab

@@ -1,0 +1,15 @@
+#pragma once
+
+#include <filesystem>
+#include <memory>
+
+#include "pipeline/sensor/frame_source.hpp"
+
+namespace kinectlab {
+
+/// A folder in the TUM RGB-D layout; see open_recording and camera_json.hpp.
+[[nodiscard]] Result<std::unique_ptr<FrameSource>> open_tum_sequence(
+    const std::filesystem::path& folder
+);
+
+}  // namespace kinectlab

@@ -1,0 +1,228 @@
+#include "pipeline/simulate/colour_renderer.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "pipeline/simulate/shading.hpp"
+
+namespace kinectlab::simulate {
+namespace {
+
+constexpr float kNoise = 1.7F;      ///< counts of 255
+constexpr float kContrast = 0.08F;  ///< between samples of a pixel; above it takes more of them
+
+/// Samples on a grid of `side` x `side` in one pixel.
+struct PixelSamples {
+    Radiance mean = Radiance::Zero();
+    Radiance low = Radiance::Constant(1e9F);
+    Radiance high = Radiance::Zero();
+};
+
+PixelSamples sample_pixel(
+    const Room& room,
+    const Pinhole& camera,
+    const Eigen::Isometry3d& T_lab_colour,
+    int u,
+    int v,
+    int side
+) {
+    PixelSamples samples;
+    const Eigen::Vector3d& eye = T_lab_colour.translation();
+    for (int i = 0; i < side * side; ++i) {
+        const double du = (i % side + 0.5) / side - 0.5;
+        const double dv = (i / side + 0.5) / side - 0.5;
+        const Eigen::Vector3d ray = T_lab_colour.linear() * camera.ray(u + du, v + dv);
+        const Hit hit = room.cast(eye, ray);
+        Radiance colour = Radiance::Constant(0.02F);
+        if (hit.material != Material::none) {
+            const auto grain = static_cast<std::uint64_t>(((v * camera.width + u) * 64 + i) * 8);
+            colour = shade_room(room, hit, eye + hit.t * ray, eye, grain);
+        }
+        colour = colour.cwiseMin(1.0F);
+        samples.mean += colour / static_cast<float>(side * side);
+        samples.low = samples.low.cwiseMin(colour);
+        samples.high = samples.high.cwiseMax(colour);
+    }
+    return samples;
+}
+
+/// Bounds of a level square's picture, cut to the image; empty if it is not all in front.
+PixelRect picture_of_square(
+    const Pinhole& camera,
+    const Eigen::Isometry3d& T_colour_lab,
+    const Eigen::Vector3d& middle,
+    double half_side
+) {
+    PixelRect rect{camera.width, camera.height, 0, 0};
+    for (const double x : {-half_side, half_side}) {
+        for (const double y : {-half_side, half_side}) {
+            const Eigen::Vector3d corner = T_colour_lab * (middle + Eigen::Vector3d(x, y, 0.0));
+            if (corner.z() < 0.05) return {};
+            const Eigen::Vector2d uv = camera.project(corner);
+            rect.left = std::min(rect.left, static_cast<int>(uv.x()));
+            rect.top = std::min(rect.top, static_cast<int>(uv.y()));
+            rect.right = std::max(rect.right, static_cast<int>(uv.x()) + 2);
+            rect.bottom = std::max(rect.bottom, static_cast<int>(uv.y()) + 2);
+        }
+    }
+    return {
+        std::max(rect.left, 0),
+        std::max(rect.top, 0),
+        std::min(rect.right, camera.width),
+        std::min(rect.bottom, camera.height)};
+}
+
+}  // namespace
+
+ColourRenderer::ColourRenderer(
+    const Room& room, const Pinhole& camera, const Eigen::Isometry3d& T_lab_colour
+)
+    : camera_(camera), T_lab_colour_(T_lab_colour) {
+    room_.reserve(static_cast<std::size_t>(camera.width) * camera.height * 3);
+    for (int v = 0; v < camera.height; ++v) {
+        for (int u = 0; u < camera.width; ++u) {
+            PixelSamples samples = sample_pixel(room, camera, T_lab_colour, u, v, 2);
+            if ((samples.high - samples.low).maxCoeff() > kContrast)
+                samples = sample_pixel(room, camera, T_lab_colour, u, v, 4);
+            for (const float channel : samples.mean)
+                room_.push_back(to_srgb(channel));
+        }
+    }
+    now_ = room_;
+}
+
+void ColourRenderer::render(
+    const Bob& bob, const FrameRandom& random, bool noisy, std::vector<std::uint8_t>& rgb
+) {
+    for (const PixelRect& rect : drawn_)
+        restore(rect);
+    drawn_.clear();
+    draw_shadow(bob);
+    draw_string(bob);
+    draw_bob(bob);
+    rgb.resize(now_.size());
+    if (!noisy) {
+        std::copy(now_.begin(), now_.end(), rgb.begin());
+        return;
+    }
+    static const std::vector<std::int8_t> noise = [] {
+        std::vector<std::int8_t> counts;
+        for (const float gauss : gaussian_table())
+            counts.push_back(static_cast<std::int8_t>(std::lround(kNoise * gauss)));
+        return counts;
+    }();
+    constexpr std::uint32_t kColourPurpose = 100;
+    const int row_bytes = camera_.width * 3;
+    for (int v = 0; v < camera_.height; ++v) {
+        const std::int8_t* add =
+            noise.data() + place(random.draw(kColourPurpose, static_cast<std::uint32_t>(v)));
+        const std::uint8_t* from = now_.data() + static_cast<std::ptrdiff_t>(v) * row_bytes;
+        std::uint8_t* to = rgb.data() + static_cast<std::ptrdiff_t>(v) * row_bytes;
+        for (int i = 0; i < row_bytes; ++i) {
+            const auto sum = static_cast<std::int16_t>(from[i] + add[i]);
+            to[i] = static_cast<std::uint8_t>(std::clamp(sum, std::int16_t{0}, std::int16_t{255}));
+        }
+    }
+}
+
+void ColourRenderer::restore(const PixelRect& rect) {
+    for (int v = rect.top; v < rect.bottom; ++v) {
+        const std::ptrdiff_t at = (static_cast<std::ptrdiff_t>(v) * camera_.width + rect.left) * 3;
+        std::copy_n(room_.begin() + at, (rect.right - rect.left) * 3, now_.begin() + at);
+    }
+}
+
+void ColourRenderer::blend(int u, int v, const Eigen::Vector3f& linear, float share) {
+    std::uint8_t* pixel = now_.data() + (static_cast<std::ptrdiff_t>(v) * camera_.width + u) * 3;
+    for (int i = 0; i < 3; ++i)
+        pixel[i] = to_srgb(from_srgb(pixel[i]) + share * (linear[i] - from_srgb(pixel[i])));
+}
+
+/// The shadow falls on the table top; where it would miss it, the floor is out of sight or far.
+void ColourRenderer::draw_shadow(const Bob& bob) {
+    const Eigen::Vector3d from_lamp = bob.centre_lab - lamp_centre();
+    const double below = bob.centre_lab.z() - room::kTableTop;
+    if (below <= 0.0 || from_lamp.z() >= 0.0) return;
+    const Eigen::Vector3d middle = bob.centre_lab - below / from_lamp.z() * from_lamp;
+    const double penumbra = kLampHalfSize * below / -from_lamp.z();
+    const double reach =
+        2.5 * bob.radius_m + 1.3 * penumbra + (middle - bob.centre_lab).head<2>().norm();
+    const PixelRect rect = picture_of_square(camera_, T_lab_colour_.inverse(), middle, reach);
+    const Eigen::Vector3d& eye = T_lab_colour_.translation();
+    PixelRect drawn{rect.right, rect.bottom, rect.left, rect.top};
+    for (int v = rect.top; v < rect.bottom; ++v) {
+        for (int u = rect.left; u < rect.right; ++u) {
+            const Eigen::Vector3d ray = T_lab_colour_.linear() * camera_.ray(u, v);
+            if (ray.z() >= -1e-6) continue;
+            const Eigen::Vector3d p = eye + (room::kTableTop - eye.z()) / ray.z() * ray;
+            if (std::abs(p.x()) > room::kTableHalfX || std::abs(p.y()) > room::kTableHalfY)
+                continue;
+            const float left = light_left_by(bob, p);
+            std::uint8_t* pixel =
+                now_.data() + (static_cast<std::ptrdiff_t>(v) * camera_.width + u) * 3;
+            for (int i = 0; i < 3; ++i)
+                pixel[i] = to_srgb(left * from_srgb(pixel[i]));
+            drawn = {
+                std::min(drawn.left, u),
+                std::min(drawn.top, v),
+                std::max(drawn.right, u + 1),
+                std::max(drawn.bottom, v + 1)};
+        }
+    }
+    if (!drawn.empty()) drawn_.push_back(drawn);
+}
+
+void ColourRenderer::draw_string(const Bob& bob) {
+    const Eigen::Isometry3d T_colour_lab = T_lab_colour_.inverse();
+    const Eigen::Vector3d from = T_colour_lab * bob.pivot_lab;
+    const Eigen::Vector3d to = T_colour_lab * bob.centre_lab;
+    if (from.z() < 0.05 || to.z() < 0.05) return;
+    const Eigen::Vector2d top = camera_.project(from);
+    const Eigen::Vector2d bottom = camera_.project(to);
+    if (bottom.y() - top.y() < 1.0) return;
+    const double slope = (bottom.x() - top.x()) / (bottom.y() - top.y());
+    const double lean = std::sqrt(1.0 + slope * slope);
+    const int first = std::max(0, static_cast<int>(std::ceil(top.y())));
+    const int last = std::min(camera_.height - 1, static_cast<int>(std::floor(bottom.y())));
+    const Radiance colour = albedo(Material::string, bob.centre_lab, Eigen::Vector3d::UnitZ());
+    for (int v = first; v <= last; ++v) {
+        const double share = (v - top.y()) / (bottom.y() - top.y());
+        const double inverse_z = std::lerp(1.0 / from.z(), 1.0 / to.z(), share);
+        const double half = room::kStringRadius * camera_.fx * inverse_z * lean;
+        const double middle = top.x() + slope * (v - top.y());
+        const int left = std::max(0, static_cast<int>(std::floor(middle - half)));
+        const int right = std::min(camera_.width - 1, static_cast<int>(std::ceil(middle + half)));
+        if (left > right) continue;
+        for (int u = left; u <= right; ++u) {
+            const double covered =
+                std::min(u + 0.5, middle + half) - std::max(u - 0.5, middle - half);
+            if (covered > 0.0) blend(u, v, colour, static_cast<float>(std::min(1.0, covered)));
+        }
+        drawn_.push_back({left, v, right + 1, v + 1});
+    }
+}
+
+void ColourRenderer::draw_bob(const Bob& bob) {
+    const Eigen::Vector3d& eye = T_lab_colour_.translation();
+    const Eigen::Vector3d centre = T_lab_colour_.inverse() * bob.centre_lab;
+    const PixelRect rect = picture_of_sphere(camera_, centre, bob.radius_m);
+    for (int v = rect.top; v < rect.bottom; ++v) {
+        for (int u = rect.left; u < rect.right; ++u) {
+            const Eigen::Vector3d ray = camera_.ray(u, v);
+            const double rr = ray.squaredNorm();
+            const double depth = ray.dot(centre) / rr;
+            const Eigen::Vector3d nearest = depth * ray;
+            const double off = (nearest - centre).norm();
+            const double inside_px = (bob.radius_m - off) * camera_.fx / depth;
+            if (inside_px <= -0.5) continue;
+            const double chord = std::sqrt(std::max(0.0, bob.radius_m * bob.radius_m - off * off));
+            const Eigen::Vector3d point = nearest - chord / std::sqrt(rr) * ray;
+            const Eigen::Vector3d normal = T_lab_colour_.linear() * (point - centre).normalized();
+            const Radiance colour = shade_bob(bob.centre_lab + bob.radius_m * normal, normal, eye);
+            blend(u, v, colour.cwiseMin(1.0F), static_cast<float>(std::min(1.0, inside_px + 0.5)));
+        }
+    }
+    if (!rect.empty()) drawn_.push_back(rect);
+}
+
+}  // namespace kinectlab::simulate

@@ -1,0 +1,75 @@
+#pragma once
+
+#include <array>
+#include <limits>
+
+#include <Eigen/Geometry>
+
+#include "pipeline/core/camera.hpp"
+
+namespace kinectlab::simulate {
+
+/// Where the Kinect stands: in front of the swing plane, looking along +y.
+struct CameraPlacement {
+    double distance_m = 1.6;  ///< depth camera to the plane y = 0
+    double height_m = 1.15;   ///< above the floor
+    double tilt_rad = 0.0;    ///< positive looks down
+};
+
+/// The laboratory in the lab frame: origin on the floor below the pivot, x east along the main
+/// motion, y north (away from the camera), z up; metres.
+namespace room {
+constexpr double kBobRestHeight = 0.9;
+constexpr double kWallY = 1.6;
+constexpr double kTableTop = 0.74;
+constexpr double kTableHalfX = 0.95;
+constexpr double kTableHalfY = 0.40;
+constexpr double kStringRadius = 0.001;
+}  // namespace room
+
+enum class Material { none, wall, floor, table, table_leg, cabinet, mount, bob, string };
+
+struct Hit {
+    double t =
+        std::numeric_limits<double>::infinity();  ///< along the ray, in lengths of its direction
+    Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();
+    Material material = Material::none;
+};
+
+struct Box {
+    Eigen::Vector3d low, high;
+    Material material;
+};
+
+/// Everything that stands still.
+class Room {
+public:
+    explicit Room(double pivot_height_m);
+
+    /// Nearest surface in front of `origin`; Material::none if there is none.
+    [[nodiscard]] Hit cast(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction) const;
+
+    /// True if furniture stands between the two points; the thin mount does not count.
+    [[nodiscard]] bool hides(const Eigen::Vector3d& from, const Eigen::Vector3d& to) const;
+
+private:
+    std::array<Box, 8> boxes_;
+};
+
+/// The moving part.
+struct Bob {
+    Eigen::Vector3d centre_lab = Eigen::Vector3d::Zero();
+    double radius_m = 0.05;
+    Eigen::Vector3d pivot_lab = Eigen::Vector3d::Zero();
+};
+
+/// Pivot of a pendulum of this length, so that the bob rests at kBobRestHeight.
+[[nodiscard]] Eigen::Vector3d pivot_of(double length_m);
+
+/// Depth camera → lab.
+[[nodiscard]] Eigen::Isometry3d T_lab_cam_of(const CameraPlacement& placement);
+
+/// The simulated Kinect: f = 580 px for depth, 525 px for colour, 2.5 cm to the right of it.
+[[nodiscard]] RgbdCamera kinect_camera();
+
+}  // namespace kinectlab::simulate

@@ -1,0 +1,15 @@
+#pragma once
+
+#include "pipeline/track/tracker.hpp"
+
+namespace kinectlab {
+
+/// Method "sphere": each object is a sphere of known radius or of one between two bounds. A segment
+/// that moved gives a candidate by RANSAC, the candidate is refined along the viewing rays, and
+/// what does not look like one whole sphere standing alone is refused. Several spheres keep their
+/// identity by staying near where they were; a sphere in the picture belongs to one object only.
+[[nodiscard]] std::unique_ptr<Tracker> make_sphere_tracker(
+    const RgbdCamera& camera, std::vector<IndexedSpec> objects
+);
+
+}  // namespace kinectlab

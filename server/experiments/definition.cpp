@@ -1,0 +1,81 @@
+#include "server/experiments/definition.hpp"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+
+#include "pipeline/core/nearest_name.hpp"
+
+namespace kinectlab::experiments {
+namespace {
+
+// Shortest text that gives the same number again: 0.1, not 0.100000.
+std::string to_text(double value) {
+    std::array<char, 32> buffer{};
+    const auto end = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value).ptr;
+    return {buffer.data(), end};
+}
+
+const Parameter* find(const Definition& definition, const std::string& name) {
+    const auto& all = definition.parameters;
+    const auto found =
+        std::find_if(all.begin(), all.end(), [&](const auto& p) { return p.name == name; });
+    return found == all.end() ? nullptr : &*found;
+}
+
+std::vector<std::string> names_of(const Definition& definition, RigKind rig) {
+    std::vector<std::string> names;
+    for (const auto& parameter : definition.parameters) {
+        if (rig == RigKind::simulated || !parameter.simulation_only)
+            names.push_back(parameter.name);
+    }
+    return names;
+}
+
+std::string range_of(const Parameter& parameter) {
+    std::string text =
+        "give a number from " + to_text(parameter.min) + " to " + to_text(parameter.max);
+    if (parameter.unit != "1") text += " (" + parameter.unit + ")";
+    return text;
+}
+
+}  // namespace
+
+Result<Values> validate(const Definition& definition, const Values& given, RigKind rig) {
+    const auto wrong = [](const std::string& name, std::string message, std::string cure) {
+        return fail(ErrorCode::invalid_argument, name, std::move(message), std::move(cure));
+    };
+    for (const auto& [name, value] : given) {
+        const Parameter* parameter = find(definition, name);
+        if (parameter == nullptr) {
+            const std::string nearest = nearest_name(name, names_of(definition, rig));
+            return wrong(
+                name, "is not a parameter of " + definition.id, "did you mean " + nearest + "?"
+            );
+        }
+        if (rig == RigKind::real && parameter->simulation_only) {
+            return wrong(name, "can only be set in a simulation", "leave it out");
+        }
+        const bool inside = value >= parameter->min && value <= parameter->max;  // false for NaN
+        if (!inside) return wrong(name, "is " + to_text(value), range_of(*parameter));
+    }
+    Values values;
+    for (const auto& name : names_of(definition, rig)) {
+        const auto found = given.find(name);
+        values[name] = found != given.end() ? found->second : find(definition, name)->default_value;
+    }
+    return values;
+}
+
+std::vector<ObjectSpec> objects_for(const Definition& definition, const Values& values) {
+    std::vector<ObjectSpec> specs;
+    for (const auto& object : definition.objects) {
+        specs.push_back(object.spec);
+        if (!object.radius_parameter.empty())
+            specs.back().radius_m = values.at(object.radius_parameter);
+    }
+    return specs;
+}
+
+}  // namespace kinectlab::experiments

@@ -1,0 +1,71 @@
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+#include <nlohmann/json_fwd.hpp>
+
+#include "pipeline/core/error.hpp"
+#include "pipeline/track/object_spec.hpp"
+
+namespace kinectlab::experiments {
+
+/// One number that a person may set before a run.
+struct Parameter {
+    std::string name;  ///< with its unit at the end, e.g. "length_m"
+    std::string unit;  ///< for people, e.g. "m"; "1" for a pure number
+    double min = 0.0;
+    double max = 0.0;
+    double step = 0.0;  ///< of the input field; values between the steps are fine
+    double default_value = 0.0;
+    std::string help;              ///< one sentence for a student
+    bool simulation_only = false;  ///< only a simulated rig can change it
+};
+
+/// An object of the experiment; a size that is a parameter is taken from the run's values.
+struct ExperimentObject {
+    ObjectSpec spec;
+    std::string radius_parameter;  ///< empty: spec.radius_m stands as it is
+};
+
+/// What an experiment is, from NAME.json in this folder.
+struct Definition {
+    std::string id;
+    std::string title;
+    std::string summary;
+    std::vector<Parameter> parameters;
+    std::vector<ExperimentObject> objects;
+};
+
+using Values = std::map<std::string, double>;
+
+/// What kind of rig the values are for; parameters that only a simulation has are refused for a
+/// real one, and left out of its values.
+enum class RigKind { simulated, real };
+
+/// The values of all parameters: those given, the others by default. Errors name the parameter:
+/// unknown (with the nearest valid name), out of range, NaN, or not to be set on a real rig.
+[[nodiscard]] Result<Values> validate(
+    const Definition& definition, const Values& given, RigKind rig = RigKind::simulated
+);
+
+/// What to track in a run with these (validated) values.
+[[nodiscard]] std::vector<ObjectSpec> objects_for(
+    const Definition& definition, const Values& values
+);
+
+/// Unknown keys, missing keys, ranges without their default inside: errors with the JSON path.
+[[nodiscard]] Result<Definition> read_definition(const nlohmann::json& document);
+[[nodiscard]] nlohmann::json to_json(const Definition& definition);
+
+/// All *.json of a folder by id. Errors name the file.
+[[nodiscard]] Result<std::vector<Definition>> load_definitions(const std::filesystem::path& folder);
+
+/// `folder`/`id`.json; an unknown id is refused with the nearest known one.
+[[nodiscard]] Result<Definition> load_definition(
+    const std::filesystem::path& folder, const std::string& id
+);
+
+}  // namespace kinectlab::experiments

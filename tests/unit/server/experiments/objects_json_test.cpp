@@ -1,0 +1,97 @@
+#include "server/experiments/objects_json.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "server/experiments/strict_json.hpp"
+
+namespace kinectlab::experiments {
+namespace {
+
+using testing::HasSubstr;
+
+Error error_of(const std::string& text) {
+    const auto objects = parse_json(text, "objects.json").and_then(read_objects);
+    EXPECT_FALSE(objects) << text;
+    return objects ? Error{} : objects.error();
+}
+
+TEST(Objects, ReadsSpheresAndWhateverMoved) {
+    const auto objects = parse_json(
+                             R"({"objects":[
+        {"name":"bob","method":"sphere","radius_m":0.05},
+        {"name":"ball 2","method":"sphere","min_radius_m":0.02},
+        {"name":"boxes","method":"change"}]})",
+                             "objects.json"
+    )
+                             .and_then(read_objects);
+    ASSERT_TRUE(objects) << to_text(objects.error());
+    ASSERT_EQ(objects->size(), 3u);
+    EXPECT_EQ((*objects)[0].radius_m, 0.05);
+    EXPECT_FALSE((*objects)[1].radius_m);
+    EXPECT_EQ((*objects)[1].min_radius_m, 0.02);
+    EXPECT_EQ((*objects)[2].method, "change");
+}
+
+struct Wrong {
+    const char* text;
+    const char* field;
+    const char* cure;
+};
+
+class WrongObjects : public testing::TestWithParam<Wrong> {};
+
+TEST_P(WrongObjects, NamesTheFieldAndTheCure) {
+    const Error error = error_of(GetParam().text);
+    EXPECT_EQ(error.field, GetParam().field);
+    EXPECT_THAT(error.cure, HasSubstr(GetParam().cure));
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    All,
+    WrongObjects,
+    testing::Values(
+        Wrong{R"({"objects":[]})", "objects", "1 to 64"},
+        Wrong{R"({"object":[]})", "object", "did you mean objects"},
+        Wrong{R"([])", "", "objects"},
+        Wrong{R"({"objects":[3]})", "objects[0]", "name, method"},
+        Wrong{R"({"objects":[{"method":"sphere"}]})", "objects[0].name", "text"},
+        Wrong{
+            R"({"objects":[{"name":"=1+1","method":"change"}]})", "objects[0].name", "begin with"},
+        Wrong{R"({"objects":[{"name":"a","method":"shpere"}]})", "objects[0].method", "sphere"},
+        Wrong{
+            R"({"objects":[{"name":"a","method":"sphere","radius":1}]})",
+            "objects[0].radius",
+            "radius_m"},
+        Wrong{
+            R"({"objects":[{"name":"a","method":"sphere","radius_m":"1"}]})",
+            "objects[0].radius_m",
+            "number"},
+        Wrong{
+            R"({"objects":[{"name":"a","method":"sphere","radius_m":-1}]})",
+            "objects[0].radius_m",
+            "above 0"},
+        Wrong{
+            R"({"objects":[{"name":"a","method":"sphere","min_radius_m":0.4}]})",
+            "objects[0].min_radius_m",
+            "<"},
+        Wrong{
+            R"({"objects":[{"name":"a","method":"change","radius_m":1}]})",
+            "objects[0].radius_m",
+            "method"},
+        Wrong{
+            R"({"objects":[{"name":"a","method":"change"},{"name":"a","method":"change"}]})",
+            "objects[1].name",
+            "own"},
+        Wrong{R"({"objects":[{"name":"a","name":"b","method":"change"}]})", "objects.json", "once"},
+        Wrong{R"({"objects":[)", "objects.json", "correct"},
+        Wrong{
+            R"({"objects":[{"name":"a","method":"sphere","radius_m":1e999}]})",
+            "objects.json",
+            "correct"}
+    )
+);
+
+}  // namespace
+}  // namespace kinectlab::experiments
