@@ -8,6 +8,9 @@ namespace kinectlab::bench {
 
 Figures measure_frame_to_pose();
 Figures measure_sphere_accuracy();
+Figures measure_gravity_from_positions();
+Figures measure_gravity_khoshelham();
+Figures measure_gravity_kinect();
 
 /// Everything that can be measured. To add something: declare it above and name it here with the
 /// figures it yields, so that --filter can pass over what is not wanted.
@@ -19,6 +22,9 @@ struct Measurement {
 inline constexpr std::array kMeasurements{
     Measurement{"depth frame to pose, stock chain", measure_frame_to_pose},
     Measurement{"sphere centre accuracy", measure_sphere_accuracy},
+    Measurement{"g, white positions, analysis of 900 positions", measure_gravity_from_positions},
+    Measurement{"g, khoshelham noise", measure_gravity_khoshelham},
+    Measurement{"g, kinect noise", measure_gravity_kinect},
 };
 
 }  // namespace kinectlab::bench
