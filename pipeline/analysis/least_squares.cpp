@@ -28,8 +28,8 @@ NormalEquations evaluate(
         const bool far = d > weights.huber;
         sum.cost += far ? weights.huber * (d - weights.huber / 2) : d * d / 2;
         const double weight = far ? weights.huber / d : 1.0;
-        const SwingJacobian j = whiten * path.jacobian();
-        sum.information.noalias() += weight * j.transpose() * j;
+        const SwingJacobian j = whiten.lazyProduct(path.jacobian());
+        sum.information += j.transpose().lazyProduct(weight * j);  // lazy: too small for blocks
         sum.gradient.noalias() += weight * j.transpose() * r;
     }
     return sum;
@@ -94,7 +94,8 @@ SwingParameters minimise(
     std::span<const SwingSample> samples,
     SwingParameters start,
     const SwingWeights& weights,
-    const SwingPriors& priors
+    const SwingPriors& priors,
+    double tolerance
 ) {
     const SwingMatrix prior = prior_information(priors);
     const auto prior_cost = [&](const SwingParameters& p) {
@@ -121,7 +122,7 @@ SwingParameters minimise(
                 here = there;
                 cost = trial_cost;
                 lambda = std::max(lambda / 10.0, 1e-12);
-                if (predicted < 1e-6) break;  // a thousandth of a standard deviation
+                if (predicted < tolerance * tolerance) break;
                 continue;
             }
         }

@@ -52,12 +52,14 @@ struct NormalEquations {
 /// Inverse over the free parameters (all but the last `fixed`), zero elsewhere.
 [[nodiscard]] SwingMatrix inverse_information(const SwingMatrix& information, int fixed);
 
-/// Levenberg-Marquardt with Marquardt's scaling; the Earth's turning stays fixed.
+/// Levenberg-Marquardt with Marquardt's scaling; the Earth's turning stays fixed. Ends when the
+/// next step would be shorter than `tolerance` standard deviations.
 [[nodiscard]] SwingParameters minimise(
     std::span<const SwingSample> samples,
     SwingParameters start,
     const SwingWeights& weights,
-    const SwingPriors& priors
+    const SwingPriors& priors,
+    double tolerance = 1e-2
 );
 
 }  // namespace kinectlab

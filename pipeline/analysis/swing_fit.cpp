@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include "pipeline/analysis/free_swing.hpp"
+#include "pipeline/analysis/median.hpp"
 
 namespace kinectlab {
 namespace {
@@ -23,12 +24,6 @@ constexpr double kSmallestNoise =
 
 using Samples = std::span<const SwingSample>;
 using Residuals = std::vector<Eigen::Vector3d>;
-
-double median(std::vector<double> values) {
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    return *middle;
-}
 
 std::vector<double> distances(
     Samples samples, const Residuals& residuals, const Eigen::Matrix3d& rescale
@@ -49,23 +44,27 @@ SwingWeights robust_weights(double factor) {
     return {Eigen::Matrix3d::Identity() / factor, 3.0, {}};
 }
 
-/// Makes the used residuals white on average, whatever the given covariances say of their shape.
+/// Makes the used residuals white on average, whatever the given covariances say of their shape;
+/// the median of all sets the size if that is larger, so that nothing shrinks what counts as an
+/// outlier.
 Eigen::Matrix3d whiten_residuals(
     Samples samples, const Residuals& residuals, const std::vector<bool>& use
 ) {
     Eigen::Matrix3d s = Eigen::Matrix3d::Zero();
-    double n = 0.0;
+    double n = -static_cast<double>(kSwingParameters) / 3.0;
     for (std::size_t i = 0; i < samples.size(); ++i) {
         if (!use[i]) continue;
         const Eigen::Vector3d r = samples[i].whiten * residuals[i];
         s += r * r.transpose();
         n += 1.0;
     }
-    s *= 1.0 / (n - static_cast<double>(kSwingParameters) / 3.0);
-    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(s);
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(s / n);
     const Eigen::Vector3d inverse_root =
         eigen.eigenvalues().cwiseMax(kSmallestNoise).cwiseSqrt().cwiseInverse();
-    return eigen.eigenvectors() * inverse_root.asDiagonal() * eigen.eigenvectors().transpose();
+    const Eigen::Matrix3d whiten =
+        eigen.eigenvectors() * inverse_root.asDiagonal() * eigen.eigenvectors().transpose();
+    const double size = median(distances(samples, residuals, whiten)) / std::sqrt(kMedianChi2);
+    return whiten / std::max(size, 1.0);
 }
 
 std::vector<bool> within(const std::vector<double>& d, double limit) {
@@ -116,6 +115,7 @@ Result<SwingParameters> follow_free_swing(
 ) {
     SwingParameters parameters = guess.parameters;
     range = {guess.begin, guess.end, false, false};
+    double noise = 0.0;
     for (bool whole = false;; whole = range.begin_found && range.end_found) {
         const Samples known = samples.subspan(range.begin, range.end - range.begin);
         if ((known.back().t - known.front().t) / guess.period < kFewestPeriods - 0.1)
@@ -129,27 +129,25 @@ Result<SwingParameters> follow_free_swing(
                 "let the pendulum swing freely for at least three periods, ten or more for a good "
                 "result"
             );
-        for (int round = 0; round < 2;
-             ++round) {  // the second with the noise that the first has found
-            const double factor = noise_factor(known, swing_residuals(known, parameters));
-            parameters = minimise(known, parameters, robust_weights(factor), priors);
-        }
+        if (noise == 0.0) noise = noise_factor(known, swing_residuals(known, parameters));
+        parameters = minimise(known, parameters, robust_weights(noise), priors, 0.3);
         if (whole) return parameters;
 
         const Residuals residuals = swing_residuals(known, parameters);
+        noise = noise_factor(known, residuals);
         std::vector<double> off;
         for (const auto& r : residuals)
             off.push_back(r.norm());
         const double amplitude =
             parameters.radius * std::sin(std::min(turning_angle(parameters), 1.5));
-        if (!(median(std::move(off)) < 0.25 * amplitude))
+        if (noise > 3.0 && !(median(std::move(off)) < 0.25 * amplitude))
             return fail(
                 ErrorCode::bad_data,
                 "samples",
                 "the motion is not that of a pendulum of the given length",
                 "check length_m, and let the pendulum swing freely for at least three periods"
             );
-        const PathTolerance tolerance{6.0 * noise_factor(known, residuals), 0.1 * amplitude};
+        const PathTolerance tolerance{6.0 * noise, 0.1 * amplitude};
         const FreeSwing grown =
             grow_free_swing(samples, range, parameters, guess.period, tolerance);
         SwingPath path(parameters);
@@ -201,15 +199,9 @@ Result<SwingFit> fit_swing(
     SwingWeights weights{
         Eigen::Matrix3d::Identity() / factor, std::numeric_limits<double>::infinity(), {}};
     for (int round = 0; round < 4; ++round) {
+        if (round > 0) weights.rescale = whiten_residuals(samples, fit.residuals, weights.use);
         auto use = within(distances(samples, fit.residuals, weights.rescale), kOutlier);
         if (round > 1 && use == weights.use) break;
-        if (std::count(use.begin(), use.end(), true) * 2 < static_cast<std::ptrdiff_t>(use.size()))
-            return fail(
-                ErrorCode::bad_data,
-                "samples",
-                "more than half of the positions lie off any swing",
-                "let the camera see nothing else that moves, and let the pendulum swing freely"
-            );
         weights.use = std::move(use);
         weights.rescale = whiten_residuals(samples, fit.residuals, weights.use);
         fit.parameters = minimise(samples, fit.parameters, weights, priors);

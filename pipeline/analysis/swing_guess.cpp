@@ -3,123 +3,19 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <optional>
 
 #include <Eigen/Cholesky>
 #include <fmt/format.h>
+
+#include "pipeline/analysis/median.hpp"
+#include "pipeline/analysis/swing_spectrum.hpp"
 
 namespace kinectlab {
 namespace {
 
 using std::numbers::pi;
-using Plane = Eigen::Matrix<double, Eigen::Dynamic, 2>;  // x and y over time
-
-constexpr double kSpectrumSpan = 60.0;   // s: longer records are looked at piece by piece
-constexpr double kStrongestPull = 60.0;  // m/s²: no search for periods beyond
 constexpr double kFewestPeriods = 3.0;
 constexpr double kWidest = 0.985;  // sin 80°
-
-double median(std::vector<double> values) {
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    return *middle;
-}
-
-Eigen::Vector2d median_place(std::span<const SwingSample> samples) {
-    std::vector<double> x, y;
-    for (const auto& s : samples) {
-        x.push_back(s.p_lab.x());
-        y.push_back(s.p_lab.y());
-    }
-    return {median(std::move(x)), median(std::move(y))};
-}
-
-/// x and y about their middle, with wild values pulled in.
-Plane clipped(std::span<const SwingSample> samples) {
-    const Eigen::Vector2d middle = median_place(samples);
-    std::vector<double> distance;
-    for (const auto& s : samples)
-        distance.push_back((s.p_lab.head<2>() - middle).norm());
-    const double limit = 3.0 * median(std::move(distance));
-    Plane xy(samples.size(), 2);
-    for (std::size_t i = 0; i < samples.size(); ++i) {
-        const Eigen::Vector2d d = samples[i].p_lab.head<2>() - middle;
-        xy.row(static_cast<Eigen::Index>(i)) =
-            (d.norm() > limit ? d * (limit / d.norm()) : d).transpose();
-    }
-    return xy;
-}
-
-/// How much of the variance of xy a sine of frequency f with a free mean explains.
-double explained(std::span<const SwingSample> samples, const Plane& xy, double f) {
-    Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
-    Eigen::Matrix<double, 3, 2> right = Eigen::Matrix<double, 3, 2>::Zero();
-    for (std::size_t i = 0; i < samples.size(); ++i) {
-        const double phase = 2.0 * pi * f * (samples[i].t - samples.front().t);
-        const Eigen::Vector3d basis(1.0, std::cos(phase), std::sin(phase));
-        normal += basis * basis.transpose();
-        right += basis * xy.row(static_cast<Eigen::Index>(i));
-    }
-    return (right.array() * normal.ldlt().solve(right).array()).sum() -
-           xy.colwise().sum().squaredNorm() / static_cast<double>(samples.size());
-}
-
-/// The minute that moves most.
-std::span<const SwingSample> liveliest(std::span<const SwingSample> samples) {
-    std::span<const SwingSample> best = samples;
-    double most = -1.0;
-    if (samples.back().t - samples.front().t <= kSpectrumSpan) return samples;
-    std::size_t begin = 0;
-    for (std::size_t end = 0; end <= samples.size(); ++end) {
-        if (end < samples.size() && samples[end].t - samples[begin].t < kSpectrumSpan) continue;
-        const auto piece = samples.subspan(begin, end - begin);
-        const double spread = piece.size() < 30 ? 0.0 : clipped(piece).squaredNorm();
-        if (spread > most) {
-            most = spread;
-            best = piece;
-        }
-        begin = end;
-    }
-    return best;
-}
-
-std::optional<double> find_frequency(std::span<const SwingSample> samples, double length_m) {
-    const Plane xy = clipped(samples);
-    const double total = (xy.rowwise() - xy.colwise().mean()).squaredNorm();
-    if (!(total > 0.0)) return std::nullopt;
-    const double span = samples.back().t - samples.front().t;
-    const double highest = std::min(
-        std::sqrt(kStrongestPull / length_m) / (2.0 * pi),
-        0.45 * static_cast<double>(samples.size()) / span
-    );
-    const double step = 0.2 / span;
-    double best = 0.0;
-    double best_speed = -1.0;
-    for (double f = 0.5 / span; f <= highest; f += step) {
-        const double speed = explained(samples, xy, f) * f * f;
-        if (speed > best_speed) {
-            best_speed = speed;
-            best = f;
-        }
-    }
-    if (best == 0.0) return std::nullopt;
-    double low = std::max(best - 2.0 * step, 0.1 / span);
-    double high = best + 2.0 * step;
-    for (int i = 0; i < 20; ++i) {  // golden section on the peak
-        const double a = high - 0.618034 * (high - low);
-        const double b = low + 0.618034 * (high - low);
-        if (explained(samples, xy, a) > explained(samples, xy, b))
-            high = b;
-        else
-            low = a;
-    }
-    best = (low + high) / 2.0;
-    const double share = explained(samples, xy, best);
-    const double noise = (total - share) / static_cast<double>(samples.size());
-    if (share < 60.0 * noise)
-        return std::nullopt;  // the best of a few hundred peaks of pure noise: 20
-    return best;
-}
 
 struct Sine {
     double misfit = 0.0;                      // root mean square over amplitude
@@ -128,11 +24,11 @@ struct Sine {
 };
 
 /// A sine whose amplitude and phase drift, fitted with wild samples weighted down.
-Sine fit_sine(std::span<const SwingSample> samples, double f) {
+Sine fit_sine(std::span<const SwingSample> samples, double f, const Eigen::Vector2d& weights) {
     const auto n = static_cast<Eigen::Index>(samples.size());
     const double half = (samples.back().t - samples.front().t) / 2.0;
     Eigen::Matrix<double, Eigen::Dynamic, 5> basis(n, 5);
-    Plane xy(n, 2);
+    PlanePath xy(n, 2);
     for (Eigen::Index i = 0; i < n; ++i) {
         const double t = samples[static_cast<std::size_t>(i)].t - samples.front().t;
         const double c = std::cos(2.0 * pi * f * t);
@@ -144,10 +40,10 @@ Sine fit_sine(std::span<const SwingSample> samples, double f) {
     Eigen::ArrayXd weight = Eigen::ArrayXd::Ones(n);
     Eigen::Matrix<double, 5, 2> c;
     Eigen::ArrayXd miss;
-    for (int round = 0; round < 8; ++round) {
+    for (int round = 0; round < 5; ++round) {
         const Eigen::Matrix<double, Eigen::Dynamic, 5> weighted = basis.array().colwise() * weight;
         c = (weighted.transpose() * basis).ldlt().solve(weighted.transpose() * xy);
-        miss = (xy - basis * c).rowwise().norm().array();
+        miss = ((xy - basis * c) * weights.asDiagonal()).rowwise().norm().array();
         const double typical = std::max(median({miss.begin(), miss.end()}), 1e-9);
         weight = (2.0 * typical / miss.max(1e-12)).min(1.0);
     }
@@ -156,10 +52,11 @@ Sine fit_sine(std::span<const SwingSample> samples, double f) {
     sine.middle = c.row(0);
     sine.place = c.row(1) - c.row(3);
     sine.velocity = w * (c.row(2) - c.row(4)) + c.row(3) / half;
-    const double amplitude = std::sqrt(c.middleRows<2>(1).squaredNorm());
+    const double amplitude = (c.middleRows<2>(1) * weights.asDiagonal()).norm();
     sine.misfit = median({miss.begin(), miss.end()}) / std::max(amplitude, 1e-12);
-    const Plane model = (basis.rightCols<4>() * c.bottomRows<4>());
-    sine.widest = model.rowwise().norm().maxCoeff();
+    for (Eigen::Index i = 0; i < n; ++i)
+        if (weight[i] > 0.4)  // not an outlier
+            sine.widest = std::max(sine.widest, (xy.row(i) - c.row(0)).norm());
     return sine;
 }
 
@@ -188,7 +85,7 @@ SwingParameters to_parameters(
 }  // namespace
 
 Result<SwingGuess> guess_swing(std::span<const SwingSample> samples, double length_m) {
-    const auto f = find_frequency(liveliest(samples), length_m);
+    const auto f = find_frequency(samples, length_m);
     if (!f)
         return fail(
             ErrorCode::bad_data,
@@ -210,6 +107,7 @@ Result<SwingGuess> guess_swing(std::span<const SwingSample> samples, double leng
             "record at least three periods, ten or more for a good result"
         );
 
+    const Eigen::Vector2d weights = axis_weights(samples);
     SwingGuess guess;
     guess.period = 1.0 / *f;
     Sine best;
@@ -223,7 +121,7 @@ Result<SwingGuess> guess_swing(std::span<const SwingSample> samples, double leng
         while (end < samples.size() && samples[end].t <= start + kFewestPeriods / *f)
             ++end;
         if (end - begin < 12) continue;
-        const Sine sine = fit_sine(samples.subspan(begin, end - begin), *f);
+        const Sine sine = fit_sine(samples.subspan(begin, end - begin), *f, weights);
         if (sine.misfit >= best.misfit) continue;
         best = sine;
         guess.begin = begin;

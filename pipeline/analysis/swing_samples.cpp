@@ -36,11 +36,11 @@ Result<std::vector<SwingSample>> collect_swing_samples(const Trajectory& traject
             to_seconds(all[i].t - all.front().t),
             all[i].p_lab,
             Eigen::Matrix3d::Identity() / kDefaultSigma,
-            kDefaultSigma};
+            Eigen::Vector3d::Constant(kDefaultSigma)};
         const Eigen::LLT<Eigen::Matrix3d> cholesky(covariance);
         if (cholesky.info() == Eigen::Success && covariance.diagonal().minCoeff() > 0.0) {
             sample.whiten = cholesky.matrixL().solve(Eigen::Matrix3d::Identity());
-            sample.sigma = std::sqrt(covariance.trace() / 3.0);
+            sample.sigma = covariance.diagonal().cwiseSqrt();
         }
         samples.push_back(sample);
     }

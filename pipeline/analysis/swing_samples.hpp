@@ -15,7 +15,7 @@ struct SwingSample {
     double t = 0.0;          ///< s since the trajectory's first sample
     Eigen::Vector3d p_lab;   ///< m
     Eigen::Matrix3d whiten;  ///< whiten · covariance · whitenᵀ = 1, 1/m
-    double sigma = 0.0;      ///< root mean square of the covariance's three axes, m
+    Eigen::Vector3d sigma;   ///< of the three axes, m
 };
 
 /// The tracked samples. One without a usable covariance counts as known to a millimetre.

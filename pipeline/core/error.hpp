@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+
 #include <tl/expected.hpp>
 
 namespace kinectlab {
@@ -28,8 +29,7 @@ using Result = tl::expected<T, Error>;
 inline tl::unexpected<Error> fail(
     ErrorCode code, std::string field, std::string message, std::string cure = {}
 ) {
-    return tl::unexpected<Error>(
-        Error{code, std::move(field), std::move(message), std::move(cure)}
+    return tl::unexpected<Error>(Error{code, std::move(field), std::move(message), std::move(cure)}
     );
 }
 

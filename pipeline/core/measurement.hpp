@@ -24,7 +24,8 @@ struct Measurement {
 /// The root sum of squares of the budget (GUM 5.1.2, uncorrelated inputs).
 inline double combined(const std::vector<BudgetLine>& budget) {
     double sum = 0.0;
-    for (const auto& line : budget) sum += line.u * line.u;
+    for (const auto& line : budget)
+        sum += line.u * line.u;
     return std::sqrt(sum);
 }
 

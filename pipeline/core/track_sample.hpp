@@ -1,7 +1,8 @@
 #pragma once
 
-#include <Eigen/Geometry>
 #include <cstdint>
+
+#include <Eigen/Geometry>
 
 #include "pipeline/core/time.hpp"
 

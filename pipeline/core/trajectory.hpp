@@ -1,8 +1,9 @@
 #pragma once
 
-#include <Eigen/Geometry>
 #include <string>
 #include <vector>
+
+#include <Eigen/Geometry>
 
 #include "pipeline/core/time.hpp"
 #include "pipeline/core/track_sample.hpp"

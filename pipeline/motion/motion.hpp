@@ -1,8 +1,9 @@
 #pragma once
 
-#include <Eigen/Geometry>
 #include <span>
 #include <string>
+
+#include <Eigen/Geometry>
 
 #include "pipeline/core/track_sample.hpp"
 #include "pipeline/core/trajectory.hpp"
@@ -18,7 +19,9 @@ struct MotionSettings {
 /// Samples of one object, in time order, camera frame → lab frame, gaps filled and marked, linear
 /// and angular velocity and acceleration. Samples without a pose are "lost" and their values NaN.
 [[nodiscard]] Trajectory to_trajectory(
-    std::string object, std::span<const TrackSample> samples, const Eigen::Isometry3d& T_lab_cam,
+    std::string object,
+    std::span<const TrackSample> samples,
+    const Eigen::Isometry3d& T_lab_cam,
     const MotionSettings& settings = {}
 );
 

@@ -29,7 +29,7 @@ struct ChainSettings {
 /// where a pixel shows something persistently farther, so that an object that rested in the first
 /// frames does not leave a hole in its own path.
 class Chain {
-  public:
+public:
     /// Refuses unknown methods, radii that are not positive, no objects.
     [[nodiscard]] static Result<Chain> create(ChainSettings settings);
 
@@ -49,7 +49,7 @@ class Chain {
 
     [[nodiscard]] std::size_t learned_frames() const;
 
-  private:
+private:
     struct State;
     explicit Chain(std::unique_ptr<State> state);
     std::unique_ptr<State> state_;

@@ -132,7 +132,7 @@ Result<std::vector<TumEntry>> colour_list_of(const fs::path& folder) {
 
 }  // namespace
 
-Result<std::unique_ptr<FrameSource>> open_tum_sequence(const fs::path& folder) {
+Result<std::unique_ptr<FrameSource>> open_tum_sequence(const fs::path& folder, bool with_colour) {
     const auto forward = [](const auto& failed) {
         return tl::unexpected<Error>(failed.error());
     };
@@ -157,6 +157,8 @@ Result<std::unique_ptr<FrameSource>> open_tum_sequence(const fs::path& folder) {
         if (auto fits = fit_size(camera.colour, size_known, *size, first); !fits)
             return forward(fits);
     }
+
+    if (!with_colour) colour->clear();
 
     SourceInfo info;
     info.name = fs::absolute(folder).lexically_normal().filename().string();

@@ -7,9 +7,10 @@
 
 namespace kinectlab {
 
-/// A folder in the TUM RGB-D layout; see open_recording and camera_json.hpp.
+/// A folder in the TUM RGB-D layout; see open_recording and camera_json.hpp. Without colour its
+/// pictures are not decoded, its list is checked all the same.
 [[nodiscard]] Result<std::unique_ptr<FrameSource>> open_tum_sequence(
-    const std::filesystem::path& folder
+    const std::filesystem::path& folder, bool with_colour = true
 );
 
 }  // namespace kinectlab

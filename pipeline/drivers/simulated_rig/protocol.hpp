@@ -2,16 +2,16 @@
 
 #include <cstdint>
 
-/// What the simulated rig's OpenNI2 device understands beyond the standard properties. Plain structs
-/// of doubles, passed with openni::Device::setProperty and getProperty.
+/// What the simulated rig's OpenNI2 device understands beyond the standard properties. Plain
+/// structs of doubles, passed with openni::Device::setProperty and getProperty.
 namespace kinectlab::simulated_rig {
 
 enum Property : int {
-    kPendulum = 0x4B4C0001,   ///< set/get PendulumParameters; takes effect at once, bob at rest
-    kActuator = 0x4B4C0002,   ///< set ActuatorCommand
-    kState = 0x4B4C0003,      ///< get RigState
-    kGeometry = 0x4B4C0004,   ///< get CameraGeometry
-    kFault = 0x4B4C0005,      ///< set Fault, to try what happens when hardware fails
+    kPendulum = 0x4B4C0001,  ///< set/get PendulumParameters; takes effect at once, bob at rest
+    kActuator = 0x4B4C0002,  ///< set ActuatorCommand
+    kState = 0x4B4C0003,     ///< get RigState
+    kGeometry = 0x4B4C0004,  ///< get CameraGeometry
+    kFault = 0x4B4C0005,     ///< set Fault, to try what happens when hardware fails
 };
 
 struct PendulumParameters {
@@ -35,15 +35,21 @@ struct ActuatorCommand {
     double angle_rad = 0.0;
 };
 
-enum class Motion : std::int32_t { at_rest = 0, moving_to_angle = 1, held = 2, swinging = 3, braking = 4 };
+enum class Motion : std::int32_t {
+    at_rest = 0,
+    moving_to_angle = 1,
+    held = 2,
+    swinging = 3,
+    braking = 4
+};
 
 /// The truth at the time of the newest frame; tests compare with it, the pipeline never sees it.
 struct RigState {
     Motion motion = Motion::at_rest;
     std::int32_t reserved = 0;
     double device_time_s = 0.0;
-    double angle_rad = 0.0;      ///< between the string and the vertical
-    double bob_x_lab_m = 0.0;    ///< bob's centre
+    double angle_rad = 0.0;    ///< between the string and the vertical
+    double bob_x_lab_m = 0.0;  ///< bob's centre
     double bob_y_lab_m = 0.0;
     double bob_z_lab_m = 0.0;
 };
@@ -60,7 +66,13 @@ struct CameraGeometry {
     double clock_u;
 };
 
-enum class FaultKind : std::int32_t { none = 0, unplugged = 1, frozen = 2, black = 3, actuator_silent = 4 };
+enum class FaultKind : std::int32_t {
+    none = 0,
+    unplugged = 1,
+    frozen = 2,
+    black = 3,
+    actuator_silent = 4
+};
 
 struct Fault {
     FaultKind kind = FaultKind::none;

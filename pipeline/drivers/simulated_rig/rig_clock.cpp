@@ -1,0 +1,118 @@
+#include "pipeline/drivers/simulated_rig/rig_clock.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace kinectlab::simulated_rig {
+namespace {
+
+constexpr std::uint64_t kMostFramesBehind = 5;
+
+double time_of(std::uint64_t frame) {
+    return static_cast<double>(frame) / simulate::kFrameRateHz;
+}
+
+}  // namespace
+
+RigClock::RigClock(simulate::RigSettings settings, Watched watched, Deliver deliver)
+    : watched_(std::move(watched)),
+      deliver_(std::move(deliver)),
+      settings_(settings),
+      rig_(std::move(*simulate::SimulatedRig::create(settings))) {
+    camera_ = rig_.camera();
+    T_lab_cam_ = rig_.T_lab_cam();
+    truth_ = rig_.truth();
+    thread_ = std::thread([this] { run(); });
+}
+
+RigClock::~RigClock() {
+    {
+        const std::lock_guard lock(state_mutex_);
+        stopping_ = true;
+    }
+    stopping_changed_.notify_all();
+    thread_.join();
+}
+
+Result<void> RigClock::set_pendulum(const simulate::PendulumParameters& parameters) {
+    simulate::RigSettings settings;
+    {
+        const std::lock_guard lock(rig_mutex_);
+        settings = settings_;
+    }
+    settings.pendulum = parameters;
+    auto rig = simulate::SimulatedRig::create(settings);
+    if (!rig) return tl::unexpected(rig.error());
+    const std::lock_guard lock(rig_mutex_);
+    rig->advance_to(rig_.truth().t_s);
+    rig_ = std::move(*rig);
+    settings_ = settings;
+    return {};
+}
+
+simulate::PendulumParameters RigClock::pendulum() const {
+    const std::lock_guard lock(rig_mutex_);
+    return settings_.pendulum;
+}
+
+Result<void> RigClock::apply(const simulate::Command& command) {
+    if (fault() == FaultKind::actuator_silent) return {};
+    const std::lock_guard lock(rig_mutex_);
+    return rig_.apply(command);
+}
+
+void RigClock::set_fault(FaultKind kind, std::chrono::duration<double> lasting) {
+    const std::lock_guard lock(state_mutex_);
+    fault_ = kind;
+    fault_end_ = Clock::now() + std::chrono::duration_cast<Clock::duration>(lasting);
+}
+
+simulate::Truth RigClock::truth() const {
+    const std::lock_guard lock(state_mutex_);
+    return truth_;
+}
+
+FaultKind RigClock::fault() const {
+    const std::lock_guard lock(state_mutex_);
+    return Clock::now() < fault_end_ ? fault_ : FaultKind::none;
+}
+
+/// False when the rig is switched off.
+bool RigClock::wait_until(Clock::time_point due) {
+    std::unique_lock lock(state_mutex_);
+    return !stopping_changed_.wait_until(lock, due, [this] { return stopping_; });
+}
+
+void RigClock::run() {
+    const auto start = Clock::now();
+    const auto due_time = [start](std::uint64_t frame) {
+        const std::chrono::duration<double> since_start(time_of(frame));
+        return start + std::chrono::duration_cast<Clock::duration>(since_start);
+    };
+    RgbdFrame frame;
+    for (std::uint64_t k = 1;; ++k) {
+        const auto behind = static_cast<std::uint64_t>(
+            std::max(0.0, std::chrono::duration<double>(Clock::now() - due_time(k)).count()) *
+            simulate::kFrameRateHz
+        );
+        if (behind > kMostFramesBehind) k += behind;
+        const bool watched = watched_();
+        simulate::Truth truth;
+        {
+            const std::lock_guard lock(rig_mutex_);
+            rig_.advance_to(time_of(k));
+            if (watched) rig_.render(frame);
+            truth = rig_.truth();
+        }
+        const FaultKind fault = this->fault();
+        if (fault == FaultKind::black) std::fill(frame.depth.begin(), frame.depth.end(), 0);
+        if (!wait_until(due_time(k))) return;
+        {
+            const std::lock_guard lock(state_mutex_);
+            truth_ = truth;
+        }
+        if (watched && fault != FaultKind::frozen && fault != FaultKind::unplugged) deliver_(frame);
+    }
+}
+
+}  // namespace kinectlab::simulated_rig

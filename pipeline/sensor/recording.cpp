@@ -1,0 +1,51 @@
+#include "pipeline/sensor/recording.hpp"
+
+#include <algorithm>
+
+#include "pipeline/sensor/oni_recording.hpp"
+#include "pipeline/sensor/pcd_sequence.hpp"
+#include "pipeline/sensor/tum_sequence.hpp"
+
+namespace kinectlab {
+namespace {
+
+namespace fs = std::filesystem;
+
+bool holds_pcd(const fs::path& folder) {
+    std::error_code code;
+    const auto is_pcd = [](const fs::directory_entry& entry) {
+        return entry.path().extension() == ".pcd";
+    };
+    return std::any_of(fs::directory_iterator(folder, code), fs::directory_iterator(), is_pcd);
+}
+
+}  // namespace
+
+Result<std::unique_ptr<FrameSource>> open_recording(
+    const fs::path& path, const RecordingOptions& options
+) {
+    std::error_code code;
+    if (!fs::exists(path, code)) {
+        return fail(
+            ErrorCode::not_found,
+            path.string(),
+            "is not there",
+            "give a recording's folder, a .pcd or an .oni file"
+        );
+    }
+    if (fs::is_directory(path, code)) {
+        const bool has_list = fs::exists(path / "depth.txt", code);
+        return !has_list && holds_pcd(path) ? open_pcd_sequence(path)
+                                            : open_tum_sequence(path, options.with_colour);
+    }
+    if (path.extension() == ".pcd") return open_pcd_sequence(path);
+    if (path.extension() == ".oni") return open_oni(path);
+    return fail(
+        ErrorCode::bad_data,
+        path.string(),
+        "is no recording that can be read",
+        "give a folder in the TUM layout, a .pcd or an .oni file"
+    );
+}
+
+}  // namespace kinectlab
