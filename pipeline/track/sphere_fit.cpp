@@ -31,7 +31,7 @@ constexpr std::size_t kLanes = 8;  // sums run side by side, for the vector unit
 struct Pixels {
     std::size_t size;
     const float *x, *y, *s;
-    float *weight, *residual;
+    float *used, *weight, *residual;
     std::array<float*, 4> slope;
 };
 
@@ -42,9 +42,34 @@ struct Point {
     float per_step, gate;
 };
 
+/// The square of meet()'s root from the cross product, r² d·d - |d x c|², which loses no digits in
+/// single precision.
+inline float root2_of(float x, float y, float d2, const Point& at) {
+    const float across_x = y * at.cz - at.cy;
+    const float across_y = at.cx - x * at.cz;
+    const float across_z = x * at.cy - y * at.cx;
+    const float across2 = across_x * across_x + across_y * across_y + across_z * across_z;
+    return at.radius * at.radius * d2 - across2;
+}
+
+/// Which pixels the fit rests on: those with a reading whose rays do not graze.
+KINECTLAB_HOT_LOOP void choose(const Pixels& pixels, const Point& point) {
+    const Point at = point;
+    const float *xs = pixels.x, *ys = pixels.y, *ss = pixels.s;
+    float* used = pixels.used;
+    constexpr auto kLeast2 = static_cast<float>(kMinCosine * kMinCosine);
+    const float r2 = at.radius * at.radius;
+#pragma GCC ivdep  // the arrays are all different ones
+    for (std::size_t i = 0; i < pixels.size; ++i) {
+        const float x = xs[i], y = ys[i];
+        const float d2 = x * x + y * y + 1.0F;
+        const float read = std::min(ss[i], 1.0F);  // nothing is as far as one step, 350 m
+        used[i] = root2_of(x, y, d2, at) >= kLeast2 * r2 * d2 ? read : 0.0F;
+    }
+}
+
 /// Residual, Tukey's weight and the slopes of every pixel. From the implicit equation of meet():
-/// dw/dc = (w d - w² c)/root and dw/dr = w² r/root. The root is found from the cross product,
-/// root² = r² d·d - |d x c|², which loses no digits in single precision.
+/// dw/dc = (w d - w² c)/root and dw/dr = w² r/root.
 KINECTLAB_HOT_LOOP void linearise(const Pixels& pixels, const Point& point) {
     const Point at = point;
     const float* xs = pixels.x;
@@ -56,25 +81,19 @@ KINECTLAB_HOT_LOOP void linearise(const Pixels& pixels, const Point& point) {
     float* by_y = pixels.slope[1];
     float* by_z = pixels.slope[2];
     float* by_r = pixels.slope[3];
-    constexpr auto kLeastRoot2 = static_cast<float>(kMinCosine * kMinCosine);
+    const float* used = pixels.used;
+    constexpr auto kLeast2 = static_cast<float>(0.25 * kMinCosine * kMinCosine);
+    const float r2 = at.radius * at.radius;
 #pragma GCC ivdep  // the arrays are all different ones
     for (std::size_t i = 0; i < pixels.size; ++i) {
-        const float x = xs[i], y = ys[i], s = ss[i];
+        const float x = xs[i], y = ys[i];
         const float d2 = x * x + y * y + 1.0F;
-        const float across_x = y * at.cz - at.cy;
-        const float across_y = at.cx - x * at.cz;
-        const float across_z = x * at.cy - y * at.cx;
-        const float r2 = at.radius * at.radius;
-        const float root2 =
-            r2 * d2 - (across_x * across_x + across_y * across_y + across_z * across_z);
-        const float least = kLeastRoot2 * r2 * d2;
-        const float root = std::sqrt(std::max(root2, least));
+        const float root = std::sqrt(std::max(root2_of(x, y, d2, at), kLeast2 * r2 * d2));
         const float w = (x * at.cx + y * at.cy + at.cz + root) / at.power;
-        const float residual = s - w * at.per_step;
+        const float residual = ss[i] - w * at.per_step;
         const float off = residual / at.gate;
         const float tukey = std::max(0.0F, 1.0F - off * off);
-        const float weight = tukey * tukey;
-        weights[i] = (root2 >= least ? weight : 0.0F) * (s > 0.0F ? 1.0F : 0.0F);
+        weights[i] = used[i] * tukey * tukey;
         residuals[i] = residual;
         const float scale = w * at.per_step / root;
         by_x[i] = scale * (x - w * at.cx);
@@ -113,7 +132,7 @@ struct SphereFitter::Equations {
 
 SphereFitter::SphereFitter(const RgbdCamera& camera) : camera_(camera.depth), scale_(camera) {
     const auto room = static_cast<std::size_t>(2 * kMostPixels);
-    for (auto* field : {&x_, &y_, &s_, &weight_, &residual_})
+    for (auto* field : {&x_, &y_, &s_, &used_, &weight_, &residual_})
         field->reserve(room);
     for (auto& field : slope_)
         field.reserve(room);
@@ -148,38 +167,40 @@ void SphereFitter::gather(std::span<const std::uint16_t> depth, const Sphere& sp
         }
     }
     const std::size_t padded = (s_.size() + kLanes - 1) / kLanes * kLanes;
-    for (auto* field : {&x_, &y_, &s_, &weight_, &residual_})
+    for (auto* field : {&x_, &y_, &s_, &used_, &weight_, &residual_})
         field->resize(padded, 0.0F);
     for (auto& field : slope_)
         field.resize(padded, 0.0F);
 }
 
-SphereFitter::Equations SphereFitter::equations(
-    const Sphere& sphere, double gate_steps, bool fixed
-) {
+SphereFitter::Equations SphereFitter::equations(const Sphere& sphere, const Step& step) {
     const Eigen::Vector3f c = sphere.centre_cam.cast<float>();
     const double power = sphere.centre_cam.squaredNorm() - sphere.radius * sphere.radius;
-    linearise(
-        {s_.size(),
-         x_.data(),
-         y_.data(),
-         s_.data(),
-         weight_.data(),
-         residual_.data(),
-         {slope_[0].data(), slope_[1].data(), slope_[2].data(), slope_[3].data()}},
-        {c.x(),
-         c.y(),
-         c.z(),
-         static_cast<float>(sphere.radius),
-         static_cast<float>(power),
-         static_cast<float>(1.0 / scale_.inverse_depth_step),
-         static_cast<float>(gate_steps)}
-    );
+    const Pixels pixels{
+        s_.size(),
+        x_.data(),
+        y_.data(),
+        s_.data(),
+        used_.data(),
+        weight_.data(),
+        residual_.data(),
+        {slope_[0].data(), slope_[1].data(), slope_[2].data(), slope_[3].data()}};
+    const Point at{
+        c.x(),
+        c.y(),
+        c.z(),
+        static_cast<float>(sphere.radius),
+        static_cast<float>(power),
+        static_cast<float>(1.0 / scale_.inverse_depth_step),
+        static_cast<float>(step.gate_steps)};
+    if (step.choose_pixels) choose(pixels, at);
+    linearise(pixels, at);
     const auto sum = [this](const std::vector<float>& a, const std::vector<float>& b) {
         return weighted_sum(weight_.data(), a.data(), b.data(), s_.size());
     };
     Equations sums;
-    const int unknowns = fixed ? 3 : 4;  // of a known radius the equation is "no change"
+    const int unknowns =
+        step.fixed_radius ? 3 : 4;  // of a known radius the equation is "no change"
     for (int row = 0; row < unknowns; ++row) {
         const auto& by_row = slope_[static_cast<std::size_t>(row)];
         sums.gradient[row] = sum(by_row, residual_);
@@ -193,13 +214,15 @@ SphereFitter::Equations SphereFitter::equations(
     return sums;
 }
 
-/// Gauss-Newton steps; the gate closes on the noise as the guess's own error leaves the residuals.
+/// Gauss-Newton steps. The gate closes on the noise as the guess's own error leaves the residuals;
+/// from then on the pixels stay the same.
 bool SphereFitter::settle(Sphere& sphere, Equations& sums, double sigma, bool fixed) {
     const double first_radius = sphere.radius;
-    double gate = kFirstGateSigmas * sigma;
+    const double last_gate = kLastGateSigmas * sigma;
+    Step way{kFirstGateSigmas * sigma, true, fixed};
     double step_m = 0.0;
     for (int i = 0; i < kMaxIterations; ++i) {
-        sums = equations(sphere, gate, fixed);
+        sums = equations(sphere, way);
         if (sums.weights < kFewestPixels) return false;
         const auto solver = sums.information.ldlt();
         if (solver.info() != Eigen::Success || !solver.isPositive()) return false;
@@ -210,9 +233,10 @@ bool SphereFitter::settle(Sphere& sphere, Equations& sums, double sigma, bool fi
         sphere.centre_cam += step.head<3>();
         sphere.radius += step[3];
         if (sphere.radius <= 0.0 || sphere.centre_cam.z() <= sphere.radius) return false;
-        const bool gate_closed = gate <= 1.01 * kLastGateSigmas * sigma;
-        if (gate_closed && step_m < kSettled_m) break;
-        gate = std::max(kLastGateSigmas * sigma, 0.4 * gate);
+        if (!way.choose_pixels && step_m < kSettled_m) break;
+        // Pixels at the rim that come and go would keep the fit from settling.
+        way.choose_pixels = way.gate_steps > last_gate;
+        way.gate_steps = std::max(last_gate, 0.4 * way.gate_steps);
     }
     return step_m < kStillMoving_m;
 }

@@ -40,8 +40,13 @@ public:
 
 private:
     struct Equations;
+    struct Step {
+        double gate_steps;   // residuals beyond do not count
+        bool choose_pixels;  // anew, for the sphere as it is now
+        bool fixed_radius;
+    };
     void gather(std::span<const std::uint16_t> depth, const Sphere& sphere);
-    [[nodiscard]] Equations equations(const Sphere& sphere, double gate_steps, bool fixed);
+    [[nodiscard]] Equations equations(const Sphere& sphere, const Step& step);
     [[nodiscard]] bool settle(Sphere& sphere, Equations& sums, double sigma, bool fixed);
     void assess(SphereFit& fit, double sigma) const;
     [[nodiscard]] double correlation_inflation() const;
@@ -51,8 +56,8 @@ private:
     int stride_ = 1;
     int columns_ = 0, rows_ = 0;    // of the gathered window
     std::vector<float> x_, y_, s_;  // ray and disparity of each pixel; s = 0 without a reading
-    std::vector<float> weight_, residual_;     // at the last linearisation
-    std::array<std::vector<float>, 4> slope_;  // of the disparity by centre and radius
+    std::vector<float> used_, weight_, residual_;  // at the last linearisation
+    std::array<std::vector<float>, 4> slope_;      // of the disparity by centre and radius
 };
 
 }  // namespace kinectlab

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <array>
+
+#include "tests/bench/figure.hpp"
+
+namespace kinectlab::bench {
+
+Figures measure_frame_to_pose();
+Figures measure_sphere_accuracy();
+Figures measure_live_latency();
+
+/// Everything that can be measured. To add something: declare it above and name it here with the
+/// figures it yields, so that --filter can pass over what is not wanted.
+struct Measurement {
+    const char* figures;
+    Figures (*measure)();
+};
+
+inline constexpr std::array kMeasurements{
+    Measurement{"depth frame to pose, stock chain", measure_frame_to_pose},
+    Measurement{"sphere centre accuracy", measure_sphere_accuracy},
+    Measurement{"live: capture to pose at a WebSocket client, frames lost", measure_live_latency},
+};
+
+}  // namespace kinectlab::bench

@@ -1,0 +1,67 @@
+#include <cmath>
+#include <cstdio>
+#include <stdexcept>
+
+#include "pipeline/run/chain.hpp"
+#include "tests/bench/measurements.hpp"
+#include "tests/bench/sphere_bound.hpp"
+#include "tests/bench/swing_frames.hpp"
+
+namespace kinectlab::bench {
+namespace {
+
+struct Accuracy {
+    double rms_m = 0.0;
+    double bound_m = 0.0;
+};
+
+/// Over all frames of a simulated swing with noise that is independent for each pixel.
+Accuracy accuracy_at(double distance_m) {
+    SwingSettings settings;
+    settings.distance_m = distance_m;
+    settings.seconds = 8.0;
+    const SwingFrames frames = simulated_swing(settings);
+    ObjectSpec bob;
+    bob.name = "bob";
+    bob.radius_m = frames.radius_m;
+    auto chain = Chain::create({frames.camera, {bob}});
+    if (!chain) throw std::runtime_error(to_text(chain.error()));
+    for (const auto& frame : frames.rest)
+        chain->learn(frame).value();
+
+    double squares = 0.0, bound = 0.0;
+    for (std::size_t i = 0; i < frames.swing.size(); ++i) {
+        const auto sample = chain->track(frames.swing[i]).value().front();
+        if (sample.status != TrackStatus::tracked)
+            throw std::runtime_error("the bob was lost in frame " + std::to_string(i));
+        squares += (sample.p_cam - frames.centre_cam[i]).squaredNorm();
+        bound += centre_bound(frames.camera, frames.centre_cam[i], bob.radius_m.value()).trace();
+    }
+    const auto n = static_cast<double>(frames.swing.size());
+    return {std::sqrt(squares / n), std::sqrt(bound / n)};
+}
+
+}  // namespace
+
+Figures measure_sphere_accuracy() {
+    Figures figures;
+    for (const double distance_m : {1.0, 1.6, 2.2}) {
+        const Accuracy found = accuracy_at(distance_m);
+        char at[16];
+        std::snprintf(at, sizeof at, " at %.1f m", distance_m);
+        const std::string name = "sphere centre accuracy" + std::string(at);
+        figures.push_back(
+            {name + ", RMS over Cramér-Rao",
+             found.rms_m / found.bound_m,
+             "1",
+             1.3,
+             Better::lower,
+             {},
+             {}}
+        );
+        figures.push_back({name + ", RMS", 1e3 * found.rms_m, "mm", {}, Better::lower, {}, {}});
+    }
+    return figures;
+}
+
+}  // namespace kinectlab::bench
