@@ -15,7 +15,8 @@ struct RecordingOptions {
 /// rgb/, camera.json), one organised .pcd file or a folder of them, or an .oni file.
 /// Everything that can be checked without decoding a picture is checked here: the lists, that every
 /// file they name is there, that timestamps increase. Decoding errors come from next().
-[[nodiscard]] Result<std::unique_ptr<FrameSource>> open_recording(const std::filesystem::path& path
+[[nodiscard]] Result<std::unique_ptr<FrameSource>> open_recording(
+    const std::filesystem::path& path, const RecordingOptions& options = {}
 );
 
 }  // namespace kinectlab

@@ -148,6 +148,7 @@ Result<void> run_server(const config::Config& config, const StopSignals& signals
     spdlog::info("stopping: bobs to rest, runs interrupted, viewers told");
     alarm(kLastResort_s);
     rigs.shutdown();
+    hub.finish();
     (*server)->stop(kPatience);
     return {};
 }

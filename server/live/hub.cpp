@@ -76,9 +76,11 @@ void Hub::State::handle(const bus::Event& event) {
 }
 
 void Hub::State::listen() {
-    while (!over) {
-        const auto delivery = events->next(std::chrono::milliseconds(200));
+    while (true) {
+        const bool last = over;
+        const auto delivery = events->next(std::chrono::milliseconds(last ? 0 : 200));
         if (delivery) handle(*delivery->event);
+        if (!delivery && last) return;
     }
 }
 
@@ -108,13 +110,17 @@ Hub::Hub(bus::Bus& bus, Encoders encoders, FindRig find_rig, JpegCache& jpegs)
 }
 
 Hub::~Hub() {
+    finish();
+}
+
+void Hub::finish() {
     {
         const std::lock_guard lock(state_->picture_mutex);
         state_->over = true;
     }
     state_->picture_waits.notify_all();
-    state_->listener.join();
-    state_->painter.join();
+    if (state_->listener.joinable()) state_->listener.join();
+    if (state_->painter.joinable()) state_->painter.join();
 }
 
 Hub::Place::Place(Hub& hub, std::string rig, std::shared_ptr<Viewer> viewer)

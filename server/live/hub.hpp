@@ -51,6 +51,9 @@ public:
 
     [[nodiscard]] std::size_t viewers(const std::string& rig) const;
 
+    /// Hands on what was published so far and listens no more.
+    void finish();
+
 private:
     struct State;
     std::unique_ptr<State> state_;

@@ -28,6 +28,8 @@ namespace websocket = boost::beast::websocket;
 using asio::ip::tcp;
 using boost::system::error_code;
 
+constexpr int kSendBuffer = 128 * 1024;  ///< bytes: half a second of pictures
+
 /// Without the deflate code: small messages gain nothing and a context costs 300 KB a viewer.
 using Stream = websocket::stream<beast::tcp_stream, false>;
 
@@ -58,6 +60,7 @@ private:
     Stream stream_;
     asio::steady_timer sleep_;  ///< never fires by itself: wake() ends the writer's wait
     std::atomic<bool> wake_pending_{false};
+    bool leaving_ = false;  ///< the server goes: what waits is still sent, then the socket closes
     bool over_ = false;
     std::unique_ptr<WebSocketEndpoint> endpoint_;
 };
@@ -84,6 +87,7 @@ asio::awaitable<void> WebSocketConnection::write_all() {
     error_code error;
     while (!over_ && !error) {
         const auto message = endpoint_->next();
+        if (!message && leaving_) co_return co_await close(websocket::close_code::going_away);
         if (!message) {
             sleep_.expires_at(std::chrono::steady_clock::time_point::max());
             error_code woken;
@@ -125,6 +129,8 @@ asio::awaitable<void> WebSocketConnection::run(http::request<http::empty_body> r
     stream_.set_option(timeout);
     stream_.read_message_max(engine_.limits.websocket_message_bytes);
     stream_.auto_fragment(false);
+    // What the kernel holds back for a slow viewer is old when it arrives: keep that short.
+    stream_.next_layer().socket().set_option(tcp::socket::send_buffer_size(kSendBuffer));
 
     error_code error;
     co_await stream_.async_accept(request, asio::redirect_error(asio::use_awaitable, error));
@@ -134,10 +140,8 @@ asio::awaitable<void> WebSocketConnection::run(http::request<http::empty_body> r
     place_->close_soon = [weak = weak_from_this()] {
         const auto connection = weak.lock();
         if (!connection) return;
-        auto goodbye = [connection]() -> asio::awaitable<void> {
-            co_await connection->close(websocket::close_code::going_away);
-        };
-        asio::co_spawn(connection->engine_.io, std::move(goodbye), asio::detached);
+        connection->leaving_ = true;
+        connection->sleep_.cancel();
     };
     if (engine_.stopping) place_->close_soon();
     endpoint_->opened([weak = weak_from_this()] {

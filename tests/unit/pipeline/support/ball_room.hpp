@@ -18,7 +18,7 @@ struct Ball {
 /// Balls before a wall, by plain geometry: a truth that shares no code with the project. The noise
 /// is the disparity's alone, independent for each pixel.
 class BallRoom {
-  public:
+public:
     double wall_m = 3.2;         ///< distance of a wall across the optical axis; 0 = none
     double sigma_steps = 0.577;  ///< Gaussian noise of the disparity
     double step = 2.85e-3;       ///< 1/m
@@ -26,7 +26,7 @@ class BallRoom {
     bool string_above = false;   ///< 2 px wide, from each ball up to the picture's edge
     RgbdCamera camera;
 
-    explicit BallRoom(unsigned seed = 1): random_(seed) {}
+    explicit BallRoom(unsigned seed = 1) : random_(seed) {}
 
     [[nodiscard]] double wall_at(double, double) const { return wall_m; }
 
@@ -38,7 +38,8 @@ class BallRoom {
         frame.depth.resize(static_cast<std::size_t>(k.width * k.height));
         for (int v = 0; v < k.height; ++v)
             for (int u = 0; u < k.width; ++u)
-                frame.depth[static_cast<std::size_t>(v * k.width + u)] = noisy(distance(u, v, balls));
+                frame.depth[static_cast<std::size_t>(v * k.width + u)] =
+                    noisy(distance(u, v, balls));
         return frame;
     }
 
@@ -49,14 +50,16 @@ class BallRoom {
         for (const auto& ball : balls) {
             const Eigen::Vector3d c = ball.centre_cam;
             // |z d - c| = r
-            const double a = d.dot(d), b = -2.0 * d.dot(c), e = c.dot(c) - ball.radius * ball.radius;
+            const double a = d.dot(d), b = -2.0 * d.dot(c),
+                         e = c.dot(c) - ball.radius * ball.radius;
             const double under_root = b * b - 4.0 * a * e;
             if (under_root > 0.0) {
                 const double hit = (-b - std::sqrt(under_root)) / (2.0 * a);
                 if (z == 0.0 || hit < z) z = hit;
             }
             const Eigen::Vector2d middle = camera.depth.project(c);
-            const bool on_string = string_above && std::abs(u - middle.x()) <= 1.0 && v < middle.y();
+            const bool on_string =
+                string_above && std::abs(u - middle.x()) <= 1.0 && v < middle.y();
             if (on_string && (z == 0.0 || c.z() < z)) z = c.z();
         }
         return z;
@@ -71,7 +74,7 @@ class BallRoom {
         );
     }
 
-  private:
+private:
     std::mt19937 random_;
     std::normal_distribution<double> normal_;
     std::uniform_real_distribution<double> uniform_;

@@ -1,0 +1,156 @@
+#include <cmath>
+#include <numbers>
+
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+
+#include "pipeline/sensor/sequence_writer.hpp"
+#include "pipeline/simulate/simulate_run.hpp"
+#include "server/commands/arguments.hpp"
+#include "server/commands/commands.hpp"
+#include "server/commands/output.hpp"
+#include "server/commands/progress.hpp"
+#include "server/config/share.hpp"
+#include "server/config/version.hpp"
+#include "server/experiments/definition.hpp"
+
+namespace kinectlab::commands {
+namespace {
+
+using experiments::Values;
+
+// Simulated recordings all begin on 2026-01-01 00:00 UTC: the same seed gives the same files.
+constexpr TimeNs kStart = 1'767'225'600 * kNsPerSecond;
+
+struct Arguments {
+    std::string experiment;
+    std::string out;
+    std::string noise = "kinect";
+    std::uint64_t seed = 1;
+    std::optional<double> seconds;
+    std::vector<std::string> settings;
+};
+
+std::optional<int> parse(int argc, char** argv, Arguments& arguments) {
+    CLI::App app(
+        "Records a simulated experiment as a folder in the TUM RGB-D layout: at rest for two "
+        "seconds, displaced, held, released.",
+        "kinectlab simulate"
+    );
+    app.add_option("EXPERIMENT", arguments.experiment, "what to simulate, e.g. pendulum")
+        ->required();
+    app.add_option("--out", arguments.out, "new folder for the recording")->required();
+    app.add_option("--seconds", arguments.seconds, "of free motion (default: duration_s)")
+        ->check(CLI::Range(0.1, 3600.0));
+    app.add_option("--seed", arguments.seed, "of the noise; the same seed gives the same files")
+        ->capture_default_str();
+    app.add_option("--noise", arguments.noise, "none, khoshelham or kinect")->capture_default_str();
+    app.add_option("--set", arguments.settings, "a parameter, NAME=VALUE; may be repeated")
+        ->expected(1)
+        ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+    return parse_arguments(app, argc, argv);
+}
+
+simulate::RunSettings run_settings(
+    const Values& values, const Arguments& arguments, simulate::NoiseModel noise
+) {
+    simulate::RunSettings run;
+    run.rig.pendulum = {
+        values.at("length_m"),
+        values.at("bob_radius_m"),
+        values.at("gravity"),
+        values.at("latitude_deg"),
+        values.at("damping_per_s")};
+    run.rig.noise = noise;
+    run.rig.seed = arguments.seed;
+    run.rig.start = kStart;
+    run.amplitude_rad = values.at("amplitude_deg") * std::numbers::pi / 180.0;
+    run.seconds = arguments.seconds.value_or(values.at("duration_s"));
+    return run;
+}
+
+// A rig tells its camera only once it exists; the recording needs it before the first frame.
+Result<SourceInfo> describe(const simulate::RunSettings& run, const std::string& experiment) {
+    const auto rig = simulate::SimulatedRig::create(run.rig);
+    if (!rig) return tl::unexpected(rig.error());
+    SourceInfo info;
+    info.name = "simulated " + experiment;
+    info.camera = rig->camera();
+    info.T_lab_cam = rig->T_lab_cam();
+    info.frame_rate_hz = simulate::kFrameRateHz;
+    return info;
+}
+
+Result<simulate::RunSummary> record(
+    const simulate::RunSettings& run, SequenceWriter& writer, const Values& values
+) {
+    const double about = run.rest_s + run.held_s + run.seconds + 1.0;
+    Progress progress("frames", static_cast<std::size_t>(about * simulate::kFrameRateHz));
+    auto summary =
+        simulate::simulate_run(run, [&](const RgbdFrame& frame, const simulate::Truth& truth) {
+            progress.step();
+            writer.add_truth({frame.t, truth.p_lab, Eigen::Quaterniond::Identity()});
+            return writer.add(frame);
+        });
+    if (!summary) return summary;
+    const nlohmann::json settings = {{"experiment", "pendulum"}, {"parameters", values}};
+    writer.add_file("experiment.json", settings.dump(1) + "\n");
+    writer.finish();
+    return summary;
+}
+
+nlohmann::json to_json(
+    const simulate::RunSummary& summary,
+    const simulate::RunSettings& run,
+    const Arguments& arguments,
+    const Values& values
+) {
+    return {
+        {"experiment", arguments.experiment},
+        {"recording", arguments.out},
+        {"parameters", values},
+        {"seconds", run.seconds},
+        {"seed", arguments.seed},
+        {"noise", arguments.noise},
+        {"frames", summary.frames},
+        {"first_swinging_frame", summary.first_swinging},
+        {"release_s", summary.release_s},
+        {"provenance", {{"program", "kinectlab"}, {"version", config::version()}}}};
+}
+
+}  // namespace
+
+int simulate(int argc, char** argv) {
+    Arguments arguments;
+    if (const auto status = parse(argc, argv, arguments)) return *status;
+
+    const auto definition =
+        experiments::load_definition(config::share_dir() / "experiments", arguments.experiment);
+    if (!definition) return report_usage(definition.error());
+    const auto given = parse_settings(arguments.settings);
+    if (!given) return report_usage(given.error());
+    if (arguments.seconds && given->contains("duration_s"))
+        return report_usage(
+            {ErrorCode::invalid_argument,
+             "duration_s",
+             "is given together with --seconds",
+             "give one of them"}
+        );
+    auto values = experiments::validate(*definition, *given);
+    if (!values) return report_usage(values.error());
+    const auto noise = simulate::noise_model_named(arguments.noise);
+    if (!noise) return report_usage(noise.error());
+
+    const auto run = run_settings(*values, arguments, *noise);
+    (*values)["duration_s"] = run.seconds;
+    const auto info = describe(run, arguments.experiment);
+    if (!info) return report_usage(info.error());
+    auto writer = SequenceWriter::create(arguments.out, *info);
+    if (!writer) return report(writer.error());
+    const auto summary = record(run, *writer, *values);
+    if (!summary) return report(summary.error());
+    print_json(to_json(*summary, run, arguments, *values));
+    return kOk;
+}
+
+}  // namespace kinectlab::commands

@@ -1,0 +1,61 @@
+#include "server/experiments/recorded_settings.hpp"
+
+#include "server/experiments/strict_json.hpp"
+
+namespace kinectlab::experiments {
+namespace {
+
+Result<Values> read_values(
+    const Definition& definition, const nlohmann::json& document, const std::string& file
+) {
+    ObjectReader reader(document, "", {"experiment", "parameters"});
+    const std::string id = reader.text("experiment");
+    if (reader.ok() && id != definition.id)
+        reader.refuse("experiment", "is \"" + id + "\"", "analyse it as " + id);
+    if (!reader.ok()) return reader.error();
+
+    std::vector<std::string> names;
+    for (const auto& parameter : definition.parameters)
+        names.push_back(parameter.name);
+    static const nlohmann::json kNone = nlohmann::json::object();
+    const auto& recorded = document.contains("parameters") ? document["parameters"] : kNone;
+    ObjectReader parameters(recorded, "parameters", names);
+    Values values;
+    for (const auto& parameter : definition.parameters) {
+        if (parameter.simulation_only || !parameters.has(parameter.name)) continue;
+        // A recording may be shorter or longer than a person may ask of a rig.
+        if (parameter.name == "duration_s") continue;
+        values[parameter.name] = parameters.number(parameter.name);
+    }
+    if (!parameters.ok()) return parameters.error();
+    return validate(definition, values, RigKind::real).map_error([&](Error error) {
+        error.field = file + ": " + error.field;
+        return error;
+    });
+}
+
+}  // namespace
+
+Result<Values> with_recorded_settings(
+    const Definition& definition, const Values& given, const std::filesystem::path& recording
+) {
+    const auto file = recording / "experiment.json";
+    std::error_code code;
+    Values values;
+    if (std::filesystem::is_regular_file(file, code)) {
+        const auto document = read_json_file(file);
+        if (!document) return tl::unexpected(document.error());
+        auto recorded = read_values(definition, *document, file.string());
+        if (!recorded) {
+            Error error = recorded.error();
+            error.code = ErrorCode::bad_data;
+            return tl::unexpected(error);
+        }
+        values = std::move(*recorded);
+    }
+    for (const auto& [name, value] : given)
+        values[name] = value;
+    return validate(definition, values, RigKind::real);
+}
+
+}  // namespace kinectlab::experiments

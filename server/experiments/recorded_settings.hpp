@@ -1,0 +1,17 @@
+#pragma once
+
+#include <filesystem>
+
+#include "server/experiments/definition.hpp"
+
+namespace kinectlab::experiments {
+
+/// The values for an analysis: those given, then those that experiment.json in the recording's
+/// folder tells ({"experiment", "parameters"}, as `simulate` writes it), then the defaults. What
+/// only a simulation can set is not handed to an analysis. A file of another experiment is an
+/// error.
+[[nodiscard]] Result<Values> with_recorded_settings(
+    const Definition& definition, const Values& given, const std::filesystem::path& recording
+);
+
+}  // namespace kinectlab::experiments
