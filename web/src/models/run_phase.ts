@@ -58,7 +58,7 @@ export function phaseOf(s: Situation): Phase {
     const left = bookingInterval(slot).end - s.now;
     const yours = `The rig is yours until ${clockTime(bookingInterval(slot).end)}.`;
     const failure = ended && ended.state !== 'completed' && endedInSlot(ended, slot) ? `${endSentence(ended)} ` : '';
-    const hurry = left < 2 * minute ? ` Only ${duration(left)} are left: measure briefly.` : ' Choose the settings, then prepare it.';
+    const hurry = left < 2 * minute ? ' Less than two minutes are left: measure briefly.' : ' Choose the settings, then prepare it.';
     return { sentence: failure + yours + hurry, tone: failure ? 'bad' : 'ready', action: 'prepare', label: 'Prepare', abortable: false };
   }
   const next = nextSlot(s.bookings, s.now);

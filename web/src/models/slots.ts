@@ -43,10 +43,8 @@ export function addDays(date: LocalDate, days: number): LocalDate {
 /** The first instant of a local day; midnight itself where it exists (some zones change clocks at midnight). */
 export function startOfDay(date: LocalDate, zone: string): number {
   const wall = Date.UTC(date.year, date.month - 1, date.day);
-  // The offset at the guess may be that of the other side of a change: look again from the result.
+  // Between the guess and midnight the clocks may change, by whole half hours, or skip midnight.
   let at = wall - offset(wall, zone);
-  at = wall - offset(at, zone);
-  // Where midnight is skipped the guess falls on the evening before.
   while (localDate(at, zone).day !== date.day) at += 30 * minute;
   while (localDate(at - 30 * minute, zone).day === date.day) at -= 30 * minute;
   return at;

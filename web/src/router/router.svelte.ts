@@ -4,8 +4,6 @@ import { matchRoute } from './routes';
 class Router {
   path = $state(location.pathname);
   route = $derived(matchRoute(this.path));
-  /** False for the page that was opened first: its heading does not take the focus. */
-  navigated = false;
 
   constructor() {
     addEventListener('popstate', () => this.show());
@@ -20,7 +18,6 @@ class Router {
   }
 
   private show(): void {
-    this.navigated = true;
     this.path = location.pathname;
   }
 

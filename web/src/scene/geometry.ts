@@ -3,8 +3,7 @@
 /** Height of the pivot above the origin, from where the bob is and how long the pendulum is: the pivot is
  * on the z axis, whatever height the lab frame's origin has. NaN if the bob cannot be there. */
 export function pivotHeight(p: readonly [number, number, number], length: number): number {
-  const across = p[0] * p[0] + p[1] * p[1];
-  return across < length * length ? p[2] + Math.sqrt(length * length - across) : NaN;
+  return p[2] + Math.sqrt(length * length - p[0] * p[0] - p[1] * p[1]);
 }
 
 /** Where somebody stands who looks at `target` from `distance`, angles in radians. */

@@ -70,12 +70,11 @@ export class RigScene {
     this.build(shape);
   }
 
-  /** The bob's centre, m; NaN hides it. */
+  /** The bob's centre, m. */
   setBob(x: number, y: number, z: number): void {
-    const there = this.shape !== null && Number.isFinite(x + y + z);
-    this.bob.visible = this.string.visible = this.shade.visible = there;
+    if (!this.shape) return;
+    this.bob.visible = this.string.visible = this.shade.visible = true;
     this.dirty = true;
-    if (!there || !this.shape) return;
     this.bob.position.set(x, y, z);
     this.shade.position.set(x, y, this.floor() + 0.002);
     const pivot = new Vector3(0, 0, this.shape.pivot);
