@@ -9,16 +9,10 @@ namespace kinectlab::simulate {
 namespace {
 
 constexpr float kNoise = 1.7F;      ///< counts of 255
-constexpr float kContrast = 0.08F;  ///< between samples of a pixel; above it takes more of them
+constexpr float kContrast = 0.05F;  ///< between neighbours; above it a pixel takes more samples
 
-/// Samples on a grid of `side` x `side` in one pixel.
-struct PixelSamples {
-    Radiance mean = Radiance::Zero();
-    Radiance low = Radiance::Constant(1e9F);
-    Radiance high = Radiance::Zero();
-};
-
-PixelSamples sample_pixel(
+/// Mean of `side` x `side` samples of a pixel.
+Radiance sample_pixel(
     const Room& room,
     const Pinhole& camera,
     const Eigen::Isometry3d& T_lab_colour,
@@ -26,24 +20,49 @@ PixelSamples sample_pixel(
     int v,
     int side
 ) {
-    PixelSamples samples;
-    const Eigen::Vector3d& eye = T_lab_colour.translation();
+    Radiance sum = Radiance::Zero();
+    const Eigen::Vector3d eye = T_lab_colour.translation();
     for (int i = 0; i < side * side; ++i) {
         const double du = (i % side + 0.5) / side - 0.5;
         const double dv = (i / side + 0.5) / side - 0.5;
         const Eigen::Vector3d ray = T_lab_colour.linear() * camera.ray(u + du, v + dv);
         const Hit hit = room.cast(eye, ray);
-        Radiance colour = Radiance::Constant(0.02F);
-        if (hit.material != Material::none) {
-            const auto grain = static_cast<std::uint64_t>(((v * camera.width + u) * 64 + i) * 8);
-            colour = shade_room(room, hit, eye + hit.t * ray, eye, grain);
-        }
-        colour = colour.cwiseMin(1.0F);
-        samples.mean += colour / static_cast<float>(side * side);
-        samples.low = samples.low.cwiseMin(colour);
-        samples.high = samples.high.cwiseMax(colour);
+        if (hit.material == Material::none) continue;
+        const auto grain = static_cast<std::uint64_t>((v * camera.width + u) * 16 + i);
+        sum += shade_room(room, hit, eye + hit.t * ray, eye, grain).cwiseMin(1.0F);
     }
-    return samples;
+    return sum / static_cast<float>(side * side);
+}
+
+/// One sample a pixel, and sixteen where it differs from a neighbour.
+std::vector<Radiance> sample_room(
+    const Room& room, const Pinhole& camera, const Eigen::Isometry3d& T_lab_colour
+) {
+    const auto width = static_cast<std::size_t>(camera.width);
+    std::vector<Radiance> coarse;
+    coarse.reserve(width * camera.height);
+    for (int v = 0; v < camera.height; ++v)
+        for (int u = 0; u < camera.width; ++u)
+            coarse.push_back(sample_pixel(room, camera, T_lab_colour, u, v, 1));
+    std::vector<bool> fine(coarse.size());
+    const auto compare = [&](std::size_t a, std::size_t b) {
+        if ((coarse[a] - coarse[b]).cwiseAbs().maxCoeff() > kContrast) fine[a] = fine[b] = true;
+    };
+    for (std::size_t i = 0; i < coarse.size(); ++i) {
+        if ((i + 1) % width != 0) compare(i, i + 1);
+        if (i + width < coarse.size()) compare(i, i + width);
+    }
+    for (std::size_t i = 0; i < coarse.size(); ++i)
+        if (fine[i])
+            coarse[i] = sample_pixel(
+                room,
+                camera,
+                T_lab_colour,
+                static_cast<int>(i % width),
+                static_cast<int>(i / width),
+                4
+            );
+    return coarse;
 }
 
 /// Bounds of a level square's picture, cut to the image; empty if it is not all in front.
@@ -79,15 +98,9 @@ ColourRenderer::ColourRenderer(
 )
     : camera_(camera), T_lab_colour_(T_lab_colour) {
     room_.reserve(static_cast<std::size_t>(camera.width) * camera.height * 3);
-    for (int v = 0; v < camera.height; ++v) {
-        for (int u = 0; u < camera.width; ++u) {
-            PixelSamples samples = sample_pixel(room, camera, T_lab_colour, u, v, 2);
-            if ((samples.high - samples.low).maxCoeff() > kContrast)
-                samples = sample_pixel(room, camera, T_lab_colour, u, v, 4);
-            for (const float channel : samples.mean)
-                room_.push_back(to_srgb(channel));
-        }
-    }
+    for (const Radiance& pixel : sample_room(room, camera, T_lab_colour))
+        for (const float channel : pixel)
+            room_.push_back(to_srgb(channel));
     now_ = room_;
 }
 

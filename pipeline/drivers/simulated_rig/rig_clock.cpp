@@ -45,8 +45,10 @@ Result<void> RigClock::set_pendulum(const simulate::PendulumParameters& paramete
     if (!rig) return tl::unexpected(rig.error());
     const std::lock_guard lock(rig_mutex_);
     rig->advance_to(rig_.truth().t_s);
+    if (settings_.with_colour) rig->turn_on_colour();
     rig_ = std::move(*rig);
-    settings_ = settings;
+    settings_.pendulum = parameters;
+    publish_truth();
     return {};
 }
 
@@ -58,7 +60,15 @@ simulate::PendulumParameters RigClock::pendulum() const {
 Result<void> RigClock::apply(const simulate::Command& command) {
     if (fault() == FaultKind::actuator_silent) return {};
     const std::lock_guard lock(rig_mutex_);
-    return rig_.apply(command);
+    auto applied = rig_.apply(command);
+    publish_truth();
+    return applied;
+}
+
+void RigClock::turn_on_colour() {
+    const std::lock_guard lock(rig_mutex_);
+    settings_.with_colour = true;
+    rig_.turn_on_colour();
 }
 
 void RigClock::set_fault(FaultKind kind, std::chrono::duration<double> lasting) {
@@ -83,6 +93,13 @@ bool RigClock::wait_until(Clock::time_point due) {
     return !stopping_changed_.wait_until(lock, due, [this] { return stopping_; });
 }
 
+/// With the rig's lock held.
+void RigClock::publish_truth() {
+    const simulate::Truth newest = rig_.truth();
+    const std::lock_guard lock(state_mutex_);
+    truth_ = newest;
+}
+
 void RigClock::run() {
     const auto start = Clock::now();
     const auto due_time = [start](std::uint64_t frame) {
@@ -97,19 +114,17 @@ void RigClock::run() {
         );
         if (behind > kMostFramesBehind) k += behind;
         const bool watched = watched_();
-        simulate::Truth truth;
         {
             const std::lock_guard lock(rig_mutex_);
             rig_.advance_to(time_of(k));
             if (watched) rig_.render(frame);
-            truth = rig_.truth();
         }
         const FaultKind fault = this->fault();
         if (fault == FaultKind::black) std::fill(frame.depth.begin(), frame.depth.end(), 0);
         if (!wait_until(due_time(k))) return;
         {
-            const std::lock_guard lock(state_mutex_);
-            truth_ = truth;
+            const std::lock_guard lock(rig_mutex_);
+            publish_truth();
         }
         if (watched && fault != FaultKind::frozen && fault != FaultKind::unplugged) deliver_(frame);
     }

@@ -37,9 +37,14 @@ public:
     /// Takes effect with the next frame to be rendered.
     [[nodiscard]] Result<void> apply(const simulate::Command& command);
 
+    /// Turns the colour camera on for good. Frames that are due meanwhile come late.
+    void turn_on_colour();
+
     void set_fault(FaultKind kind, std::chrono::duration<double> lasting);
 
-    /// Truth of the frame that was handed out last.
+    /// Truth of the frame that was handed out last, or of the one that is ready to be when a
+    /// command came in between; the command shows at once, so that nobody mistakes an old state for
+    /// its effect.
     [[nodiscard]] simulate::Truth truth() const;
 
     [[nodiscard]] const RgbdCamera& camera() const { return camera_; }
@@ -49,6 +54,7 @@ private:
     using Clock = std::chrono::steady_clock;
     void run();
     bool wait_until(Clock::time_point due);
+    void publish_truth();
     [[nodiscard]] FaultKind fault() const;
 
     const Watched watched_;
