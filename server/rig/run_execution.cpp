@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "server/lab/utc.hpp"
 
@@ -76,7 +77,7 @@ void RunExecution::enter(RunState state, TimeNs now) {
         case RunState::analysing: {
             stop_bob();
             rig_.writer.flush();
-            rig_.active.set_frames(frames_, frames_lost_);
+            save_frames();
             run_ = rig_.active.current().value_or(run_);  // with its frames
             RunMeasured measured{run_, rig_.device.source->info(), samples_};
             analysis_ = std::async(
@@ -97,7 +98,7 @@ void RunExecution::enter(RunState state, TimeNs now) {
         case RunState::interrupted:
             stop_bob();
             rig_.writer.flush();
-            rig_.active.set_frames(frames_, frames_lost_);
+            save_frames();
             over_ = true;
             break;
     }
@@ -211,6 +212,7 @@ bool RunExecution::over() const {
 }
 
 void RunExecution::end(RunEvent event, TimeNs now, const std::string& reason) {
+    step(now, nullptr, 0);  // what is stored already is acted on first
     if (over_) return;
     if (analysis_.valid()) {
         analysis_.wait();
@@ -220,11 +222,18 @@ void RunExecution::end(RunEvent event, TimeNs now, const std::string& reason) {
     step(now, nullptr, 0);
 }
 
+void RunExecution::save_frames() {
+    if (std::pair(frames_, frames_lost_) == saved_frames_) return;
+    rig_.active.set_frames(frames_, frames_lost_);
+    saved_frames_ = {frames_, frames_lost_};
+}
+
 void RunExecution::stop_bob() {
     if (auto sent = rig_.device.actuator->stop(); !sent) trouble_ = to_text(sent.error());
 }
 
 void RunExecution::advance(RunEvent event, TimeNs now, const std::string& cause) {
+    save_frames();  // first, so that whoever hears of the change finds them
     // A refusal means that somebody else has just taken the run elsewhere: the next step sees it.
     (void)rig_.active.advance({event, now, cause, {}});
 }

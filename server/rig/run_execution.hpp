@@ -4,6 +4,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "server/bus/bus.hpp"
@@ -68,6 +69,7 @@ private:
     void track(lab::RunState state, TimeNs now, const RgbdFrame& frame, std::uint32_t missed);
     void await_release(TimeNs now);
     void finish_analysis(TimeNs now);
+    void save_frames();
     void stop_bob();
     void advance(lab::RunEvent event, TimeNs now, const std::string& cause);
     void fail_run(TimeNs now, const Error& error);
@@ -83,6 +85,7 @@ private:
     std::map<std::string, std::vector<TrackSample>> samples_;  ///< by object
     std::int64_t frames_ = 0;
     std::int64_t frames_lost_ = 0;
+    std::pair<std::int64_t, std::int64_t> saved_frames_;  ///< what the store knows of both
     std::future<Result<RunAnalysis>> analysis_;
     std::string trouble_;
     bool over_ = false;

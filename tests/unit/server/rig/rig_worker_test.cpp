@@ -41,9 +41,9 @@ protected:
         const double end = rig_.t_s + seconds;
         while (!until()) {
             if (rig_.t_s > end) return testing::AssertionFailure() << "not in time";
-            (void)worker_.step();
-            // While nothing is open no frame moves the time on.
-            if (rig_.absent) rig_.advance(0.1);
+            const auto pause = worker_.step();
+            // Frames move the rig's time on; where none comes, the worker's own pauses do.
+            rig_.advance(std::chrono::duration<double>(pause).count());
             if (run_ && run().state == RunState::analysing) {
                 std::this_thread::sleep_for(std::chrono::milliseconds(1));
             }
