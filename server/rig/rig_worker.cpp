@@ -15,8 +15,9 @@ constexpr auto kOfflinePause = 100ms;
 constexpr TimeNs kRetry = 3 * kNsPerSecond;
 constexpr TimeNs kSilent = 2 * kNsPerSecond;  ///< without a frame a rig is offline
 constexpr TimeNs kPicturePeriod = kNsPerSecond / 10;
-constexpr TimeNs kStatusPeriod = kNsPerSecond;  ///< of figures that wander by themselves
-constexpr std::size_t kIdleReference = 30;      ///< frames that an idle rig learns its scene from
+constexpr TimeNs kStatusPeriod = kNsPerSecond;    ///< of figures that wander by themselves
+constexpr TimeNs kSignOfLife = 2 * kNsPerSecond;  ///< a viewer tells a quiet rig from a lost line
+constexpr std::size_t kIdleReference = 30;        ///< frames that an idle rig learns its scene from
 
 std::string busy_sentence(const lab::Run& run) {
     switch (run.state) {
@@ -70,7 +71,10 @@ std::chrono::milliseconds RigWorker::step() {
     if (!device_) {
         const TimeNs now = parts_.now();
         if (now >= next_attempt_) open(now);
-        if (!device_) return kOfflinePause;
+        if (!device_) {
+            update_status(now);
+            return kOfflinePause;
+        }
     }
     const auto status = device_->source->next(frame_, kFrameTimeout);
     const TimeNs now = parts_.now();
@@ -287,8 +291,10 @@ void RigWorker::update_status(TimeNs now) {
         status.state = lab::RigState::idle;
         status.sentence = trouble_.empty() ? "Free" : "Needs attention: " + trouble_;
     }
-    const bool figures_due = now - status_told_ >= kStatusPeriod && !same_figures(status, status_);
-    if (same_for_people(status, status_) && !figures_due) return;
+    const TimeNs silent = now - status_told_;
+    const bool due =
+        silent >= kSignOfLife || (silent >= kStatusPeriod && !same_figures(status, status_));
+    if (same_for_people(status, status_) && !due) return;
     status_ = status;
     status_told_ = now;
     bus_.publish(bus::RigChanged{status_});
