@@ -120,6 +120,7 @@ Result<TrackedRecording> track_recording(
     if (auto learned = learn(**source, *chain); !learned) return forward(learned);
     recording.learned_frames = chain->learned_frames();
 
+    source->reset();  // an .oni file has one player, which must start anew
     auto again = open_recording(path, depth_alone);
     if (!again) return forward(again);
     if (auto tracked = track_all(**again, *chain, recording); !tracked) return forward(tracked);

@@ -7,6 +7,7 @@ namespace kinectlab::simulated_rig {
 namespace {
 
 constexpr std::uint64_t kMostFramesBehind = 5;
+constexpr std::chrono::milliseconds kTurn{1};
 
 double time_of(std::uint64_t frame) {
     return static_cast<double>(frame) / simulate::kFrameRateHz;
@@ -121,7 +122,9 @@ void RigClock::run() {
         }
         const FaultKind fault = this->fault();
         if (fault == FaultKind::black) std::fill(frame.depth.begin(), frame.depth.end(), 0);
-        if (!wait_until(due_time(k))) return;
+        // Even when rendering is slower than time the rig is let go for a moment, or a command
+        // would never get its turn.
+        if (!wait_until(std::max(due_time(k), Clock::now() + kTurn))) return;
         {
             const std::lock_guard lock(rig_mutex_);
             publish_truth();

@@ -48,9 +48,9 @@ TimeNs utc_now() {
 }
 
 TEST(OpenniSource, PairsDepthAndColourOnTheWallClock) {
-    const auto source = open("sim://source-pairs");
+    const auto source = open("sim://source-pairs?noise=none");
     ASSERT_TRUE(source);
-    EXPECT_EQ(source->info().name, "sim://source-pairs");
+    EXPECT_EQ(source->info().name, "sim://source-pairs?noise=none");
     EXPECT_EQ(source->info().frame_rate_hz, 30.0);
     EXPECT_EQ(source->info().camera.depth.fx, 580.0);
     EXPECT_EQ(source->info().camera.colour.fx, 525.0);
@@ -86,7 +86,8 @@ TEST(OpenniSource, PairsDepthAndColourOnTheWallClock) {
 }
 
 TEST(OpenniSource, WithoutColourGivesDepthAlone) {
-    auto source = OpenniSource::open({.uri = "sim://source-depth", .with_colour = false});
+    auto source =
+        OpenniSource::open({.uri = "sim://source-depth?noise=none", .with_colour = false});
     ASSERT_TRUE(source) << to_text(source.error());
     RgbdFrame frame;
     ASSERT_TRUE(wait_for(**source, frame, FrameStatus::frame));
@@ -95,7 +96,7 @@ TEST(OpenniSource, WithoutColourGivesDepthAlone) {
 }
 
 TEST(OpenniSource, KeepsItsBuffersOnceWarm) {
-    const auto source = open("sim://source-buffers");
+    const auto source = open("sim://source-buffers?noise=none");
     ASSERT_TRUE(source);
     RgbdFrame frame;
     std::vector<const void*> seen;
@@ -109,7 +110,7 @@ TEST(OpenniSource, KeepsItsBuffersOnceWarm) {
 }
 
 TEST(OpenniSource, PropertiesPassThroughFromAnotherThread) {
-    const auto source = open("sim://source-properties");
+    const auto source = open("sim://source-properties?noise=none");
     ASSERT_TRUE(source);
     bool fine = false;
     std::thread other([&] {
@@ -131,7 +132,7 @@ TEST(OpenniSource, PropertiesPassThroughFromAnotherThread) {
 }
 
 TEST(OpenniSource, ComesBackAfterItWasUnplugged) {
-    const auto source = open("sim://source-unplugged");
+    const auto source = open("sim://source-unplugged?noise=none");
     ASSERT_TRUE(source);
     RgbdFrame frame;
     ASSERT_TRUE(wait_for(*source, frame, FrameStatus::frame));
@@ -151,7 +152,7 @@ TEST(OpenniSource, ComesBackAfterItWasUnplugged) {
 }
 
 TEST(OpenniSource, ADeviceThatHangsCountsAsGone) {
-    const auto source = open("sim://source-frozen");
+    const auto source = open("sim://source-frozen?noise=none");
     ASSERT_TRUE(source);
     RgbdFrame frame;
     ASSERT_TRUE(wait_for(*source, frame, FrameStatus::frame));

@@ -353,10 +353,10 @@ TEST(TumSequence, PicturesThatDoNotFitTheCentreAreRefused) {
 
 TEST(TumSequence, PairsColourByTimeAndNotByOrder) {
     const std::vector<TumEntry> depth = {{100, "", 1}, {200, "", 2}, {300, "", 3}, {400, "", 4}};
-    const std::vector<TumEntry> colour = {{10, "", 1}, {190, "", 2}, {260, "", 3}};
+    const std::vector<TumEntry> colour = {{30, "", 1}, {190, "", 2}, {260, "", 3}};
     const auto pairs = pair_by_time(depth, colour);
     ASSERT_EQ(pairs.size(), 4u);
-    EXPECT_EQ(pairs[0], 0u);  // 90 away, as 190 is: within one step
+    EXPECT_EQ(pairs[0], 0u);  // 70 away, within one step; 190 is 90 away
     EXPECT_EQ(pairs[1], 1u);
     EXPECT_EQ(pairs[2], 2u);
     EXPECT_EQ(pairs[3], std::nullopt);  // 140 away: no picture belongs to it
