@@ -51,7 +51,9 @@ test('a student runs the pendulum, watches it live and gets g', { timeout: 180_0
     assert.ok(viewer.of('rig').some((message) => message.rig.state === 'busy'));
     const tracked = viewer.of('pose').filter((pose) => pose.status === 'tracked');
     assert.ok(tracked.length >= 280, `${tracked.length} poses`);
-    assert.ok(tracked.every((pose) => [...pose.p, ...pose.v, ...pose.s].every(Number.isFinite)));
+    assert.ok(tracked.every((pose) => [...pose.p, ...pose.s].every(Number.isFinite)));
+    const moving = tracked.filter((pose) => pose.v?.every(Number.isFinite));
+    assert.ok(moving.length >= tracked.length - 10, 'velocities are there but for the first sight');
     assert.ok(viewer.pictures.length > 20, `${viewer.pictures.length} pictures`);
     const picture = viewer.pictures.at(-1);
     assert.equal(picture.readUInt32LE(0), 1);
