@@ -286,7 +286,7 @@ INSTANTIATE_TEST_SUITE_P(
         Damage{
             "misspelt key",
             [](Path p) { replace(p / "camera.json", "\"fx\"", "\"fX\""); },
-            "camera.json: fX",
+            "camera.json: color.fX",
             "did you mean fx"},
         Damage{
             "negative focal length",
