@@ -23,7 +23,7 @@ Swing any_swing() {
     s.damping = between(0.0, 0.05);
     s.length = between(0.4, 1.5);
     s.latitude_deg = 0.0;
-    s.seconds = 10.0;
+    s.seconds = 8.0;
     return s;
 }
 
@@ -33,13 +33,13 @@ double g_of(const Trajectory& path, const PendulumSettings& settings) {
     return result->measurements.front().value;
 }
 
-/// A dozen swings each: a fit under a sanitizer takes a good part of a second.
+/// Eight swings each: a fit under a sanitizer takes a good part of a second.
 template <class Property>
 void expect_always(Property property) {
     const std::string law = ::testing::UnitTest::GetInstance()->current_test_info()->name();
     const rc::detail::TestMetadata metadata{law, law};
     rc::detail::TestParams params = rc::detail::configuration().testParams;
-    params.maxSuccess = 12;
+    params.maxSuccess = 8;
     const auto result = rc::detail::checkTestable(std::move(property), metadata, params);
     std::ostringstream text;
     rc::detail::printResultMessage(result, text);
