@@ -54,6 +54,13 @@ private:
     using Clock = std::chrono::steady_clock;
     void run();
     bool wait_until(Clock::time_point due);
+
+    /// Whoever waits for the rig comes before the next frame: without turns the rendering loop
+    /// would take it again at once, and where rendering is slower than time nobody else ever got
+    /// it.
+    [[nodiscard]] std::unique_lock<std::mutex> take_rig() const;
+
+    mutable std::mutex turn_mutex_;
     void publish_truth();
     [[nodiscard]] FaultKind fault() const;
 
