@@ -285,7 +285,7 @@ INSTANTIATE_TEST_SUITE_P(
             ""},
         Damage{
             "misspelt key",
-            [](Path p) { replace(p / "camera.json", "\"fx\"", "\"fX\""); },
+            [](Path p) { replace(p / "camera.json", "\"fx\": 58", "\"fX\": 58"); },
             "camera.json: fX",
             "did you mean fx"},
         Damage{
