@@ -59,8 +59,6 @@ private:
     /// would take it again at once, and where rendering is slower than time nobody else ever got
     /// it.
     [[nodiscard]] std::unique_lock<std::mutex> take_rig() const;
-
-    mutable std::mutex turn_mutex_;
     void publish_truth();
     [[nodiscard]] FaultKind fault() const;
 
@@ -69,7 +67,8 @@ private:
     RgbdCamera camera_;
     Eigen::Isometry3d T_lab_cam_;
 
-    mutable std::mutex rig_mutex_;  ///< guards the next two
+    mutable std::mutex turn_mutex_;  ///< held while waiting for the rig, see take_rig()
+    mutable std::mutex rig_mutex_;   ///< guards the next two
     simulate::RigSettings settings_;
     simulate::SimulatedRig rig_;
 
