@@ -126,9 +126,7 @@ void RigClock::run() {
         }
         const FaultKind fault = this->fault();
         if (fault == FaultKind::black) std::fill(frame.depth.begin(), frame.depth.end(), 0);
-        // Even when rendering is slower than time the rig is let go for a moment, or a command
-        // would never get its turn.
-        if (!wait_until(std::max(due_time(k), Clock::now() + kTurn))) return;
+        if (!wait_until(due_time(k))) return;
         {
             const auto lock = take_rig();
             publish_truth();
