@@ -7,7 +7,6 @@ namespace kinectlab::simulated_rig {
 namespace {
 
 constexpr std::uint64_t kMostFramesBehind = 5;
-constexpr std::chrono::milliseconds kTurn{1};
 
 double time_of(std::uint64_t frame) {
     return static_cast<double>(frame) / simulate::kFrameRateHz;
@@ -38,13 +37,13 @@ RigClock::~RigClock() {
 Result<void> RigClock::set_pendulum(const simulate::PendulumParameters& parameters) {
     simulate::RigSettings settings;
     {
-        const std::lock_guard lock(rig_mutex_);
+        const auto lock = take_rig();
         settings = settings_;
     }
     settings.pendulum = parameters;
     auto rig = simulate::SimulatedRig::create(settings);
     if (!rig) return tl::unexpected(rig.error());
-    const std::lock_guard lock(rig_mutex_);
+    const auto lock = take_rig();
     rig->advance_to(rig_.truth().t_s);
     if (settings_.with_colour) rig->turn_on_colour();
     rig_ = std::move(*rig);
@@ -54,20 +53,20 @@ Result<void> RigClock::set_pendulum(const simulate::PendulumParameters& paramete
 }
 
 simulate::PendulumParameters RigClock::pendulum() const {
-    const std::lock_guard lock(rig_mutex_);
+    const auto lock = take_rig();
     return settings_.pendulum;
 }
 
 Result<void> RigClock::apply(const simulate::Command& command) {
     if (fault() == FaultKind::actuator_silent) return {};
-    const std::lock_guard lock(rig_mutex_);
+    const auto lock = take_rig();
     auto applied = rig_.apply(command);
     publish_truth();
     return applied;
 }
 
 void RigClock::turn_on_colour() {
-    const std::lock_guard lock(rig_mutex_);
+    const auto lock = take_rig();
     settings_.with_colour = true;
     rig_.turn_on_colour();
 }
@@ -86,6 +85,11 @@ simulate::Truth RigClock::truth() const {
 FaultKind RigClock::fault() const {
     const std::lock_guard lock(state_mutex_);
     return Clock::now() < fault_end_ ? fault_ : FaultKind::none;
+}
+
+std::unique_lock<std::mutex> RigClock::take_rig() const {
+    const std::lock_guard turn(turn_mutex_);
+    return std::unique_lock(rig_mutex_);
 }
 
 /// False when the rig is switched off.
@@ -116,17 +120,15 @@ void RigClock::run() {
         if (behind > kMostFramesBehind) k += behind;
         const bool watched = watched_();
         {
-            const std::lock_guard lock(rig_mutex_);
+            const auto lock = take_rig();
             rig_.advance_to(time_of(k));
             if (watched) rig_.render(frame);
         }
         const FaultKind fault = this->fault();
         if (fault == FaultKind::black) std::fill(frame.depth.begin(), frame.depth.end(), 0);
-        // Even when rendering is slower than time the rig is let go for a moment, or a command
-        // would never get its turn.
-        if (!wait_until(std::max(due_time(k), Clock::now() + kTurn))) return;
+        if (!wait_until(due_time(k))) return;
         {
-            const std::lock_guard lock(rig_mutex_);
+            const auto lock = take_rig();
             publish_truth();
         }
         if (watched && fault != FaultKind::frozen && fault != FaultKind::unplugged) deliver_(frame);

@@ -54,6 +54,11 @@ private:
     using Clock = std::chrono::steady_clock;
     void run();
     bool wait_until(Clock::time_point due);
+
+    /// Whoever waits for the rig comes before the next frame: without turns the rendering loop
+    /// would take it again at once, and where rendering is slower than time nobody else ever got
+    /// it.
+    [[nodiscard]] std::unique_lock<std::mutex> take_rig() const;
     void publish_truth();
     [[nodiscard]] FaultKind fault() const;
 
@@ -62,7 +67,8 @@ private:
     RgbdCamera camera_;
     Eigen::Isometry3d T_lab_cam_;
 
-    mutable std::mutex rig_mutex_;  ///< guards the next two
+    mutable std::mutex turn_mutex_;  ///< held while waiting for the rig, see take_rig()
+    mutable std::mutex rig_mutex_;   ///< guards the next two
     simulate::RigSettings settings_;
     simulate::SimulatedRig rig_;
 
