@@ -120,7 +120,7 @@ Result<SwingGuess> guess_swing(std::span<const SwingSample> samples, double leng
             ++begin;
         while (end < samples.size() && samples[end].t <= start + kFewestPeriods / *f)
             ++end;
-        if (end - begin < 12) continue;
+        if (end - begin < 12 || samples[end - 1].t - samples[begin].t < 2.5 / *f) continue;
         const Sine sine = fit_sine(samples.subspan(begin, end - begin), *f, weights);
         if (sine.misfit >= best.misfit) continue;
         best = sine;

@@ -56,13 +56,15 @@ KINECTLAB_HOT_LOOP void widen(const float* __restrict row, float* __restrict wid
 
 void widen_border(std::span<const float> row, std::span<float> wide) {
     const int width = static_cast<int>(row.size());
-    for (int x = 0; x < width; ++x) {
-        if (x == kJitterPx) x = std::max(x, width - kJitterPx);
-        if (x >= width) break;
+    const auto widen_at = [&](int x) {
         const int first = std::max(0, x - kJitterPx), last = std::min(width - 1, x + kJitterPx);
         wide[static_cast<std::size_t>(x)] =
             *std::max_element(row.begin() + first, row.begin() + last + 1);
-    }
+    };
+    for (int x = 0; x < std::min(kJitterPx, width); ++x)
+        widen_at(x);
+    for (int x = std::max(kJitterPx, width - kJitterPx); x < width; ++x)
+        widen_at(x);
 }
 
 using WindowRows = std::array<const float*, kWindow>;

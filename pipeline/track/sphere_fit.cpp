@@ -23,7 +23,7 @@ constexpr double kStillMoving_m = 1e-3;
 constexpr double kFirstGateSigmas = 40.0, kLastGateSigmas = 6.0;
 constexpr double kLongestStep = 0.3;  // of the radius
 constexpr int kFewestPixels = 24;
-constexpr double kMostCorrelation = 0.8;
+constexpr int kBlock = 10;  // px: a Kinect correlates over 9
 
 constexpr std::size_t kLanes = 8;  // sums run side by side, for the vector units
 
@@ -262,30 +262,31 @@ std::optional<SphereFit> SphereFitter::fit(
     return fit;
 }
 
-/// Pixels share a correlation window in a real sensor, so their errors are less than independent:
-/// with a correlation ρ between neighbours that falls off geometrically, a mean over many pixels
-/// has (1+ρ)/(1-ρ) times the variance, in each direction of the picture.
-double SphereFitter::correlation_inflation() const {
-    double squares = 0.0, beside = 0.0, below = 0.0, pairs = 0.0;
-    for (int row = 0; row + 1 < rows_; ++row) {
-        for (int column = 0; column + 1 < columns_; ++column) {
-            const auto i = static_cast<std::size_t>(row * columns_ + column);
-            const std::size_t right = i + 1, under = i + static_cast<std::size_t>(columns_);
-            if (weight_[i] * weight_[right] * weight_[under] == 0.0F) continue;
-            squares += residual_[i] * residual_[i];
-            beside += residual_[i] * residual_[right];
-            below += residual_[i] * residual_[under];
-            pairs += 1.0;
+/// Pixels share a correlation window in a real sensor, so their errors are less than independent.
+/// Whatever the window's shape, sums over blocks larger than it scatter by as much more than
+/// independent errors would let them as the fitted centre does. A single picture has few blocks, so
+/// the sums of earlier ones fade slowly.
+double SphereFitter::correlation_inflation() {
+    constexpr double kFading = 0.97;
+    correlation_.of_blocks *= kFading;
+    correlation_.of_pixels *= kFading;
+    for (int top = 0; top < rows_; top += kBlock) {
+        for (int left = 0; left < columns_; left += kBlock) {
+            double sum = 0.0, squares = 0.0;
+            for (int row = top; row < std::min(rows_, top + kBlock); ++row) {
+                for (int column = left; column < std::min(columns_, left + kBlock); ++column) {
+                    const auto i = static_cast<std::size_t>(row * columns_ + column);
+                    const double error = weight_[i] * residual_[i];
+                    sum += error;
+                    squares += error * error;
+                }
+            }
+            correlation_.of_blocks += sum * sum;
+            correlation_.of_pixels += squares;
         }
     }
-    if (pairs < kFewestPixels || squares == 0.0) return 1.0;
-    const auto factor = [&](double products) {
-        // What chance alone makes of independent errors is not correlation.
-        const double rho = products / squares - 2.0 / std::sqrt(pairs);
-        const double clamped = std::clamp(rho, 0.0, kMostCorrelation);
-        return (1.0 + clamped) / (1.0 - clamped);
-    };
-    return factor(beside) * factor(below);
+    if (correlation_.of_pixels == 0.0) return 1.0;
+    return std::max(1.0, correlation_.of_blocks / correlation_.of_pixels);
 }
 
 /// How much of the sphere the picture shows, and whether the surface ends where the sphere does.

@@ -26,8 +26,9 @@ struct SphereFit {
 
 /// Fits a sphere to a depth picture along the viewing rays, in disparity, where the noise is the
 /// same for every pixel. That is maximum likelihood, so the centre is not pulled towards the camera
-/// as by a fit of distances in space. Keeps its buffers: no allocation after the constructor.
-/// Not thread-safe.
+/// as by a fit of distances in space. Learns from picture to picture how far neighbouring pixels
+/// err together, for the covariance. Keeps its buffers: no allocation after the constructor. Not
+/// thread-safe.
 class SphereFitter {
 public:
     explicit SphereFitter(const RgbdCamera& camera);
@@ -49,10 +50,16 @@ private:
     [[nodiscard]] Equations equations(const Sphere& sphere, const Step& step);
     [[nodiscard]] bool settle(Sphere& sphere, Equations& sums, double sigma, bool fixed);
     void assess(SphereFit& fit, double sigma) const;
-    [[nodiscard]] double correlation_inflation() const;
+    [[nodiscard]] double correlation_inflation();
+
+    struct Correlation {
+        double of_blocks = 0.0;  // squares of the residuals' sums over blocks
+        double of_pixels = 0.0;  // sums of the residuals' squares
+    };
 
     Pinhole camera_;
     DisparityScale scale_;
+    Correlation correlation_;
     int stride_ = 1;
     int columns_ = 0, rows_ = 0;    // of the gathered window
     std::vector<float> x_, y_, s_;  // ray and disparity of each pixel; s = 0 without a reading

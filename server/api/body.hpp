@@ -6,6 +6,7 @@
 #include <nlohmann/json_fwd.hpp>
 
 #include "pipeline/core/error.hpp"
+#include "pipeline/core/time.hpp"
 #include "server/experiments/strict_json.hpp"
 #include "server/net/message.hpp"
 

@@ -16,7 +16,7 @@ void Channel::broadcast_state(const char* type, const std::string& json) {
         fmt::format(R"({{"type":"{0}","seq":{1},"{0}":{2}}})", type, seq_, json)
     );
     for (const auto& viewer : viewers_)
-        viewer->push_state(message);
+        viewer->push_state(message, seq_);
 }
 
 void Channel::rig_changed(const lab::RigStatus& rig, const Encoders& encoders) {
@@ -69,7 +69,7 @@ void Channel::add(
         }
     }
     hello += "]}";
-    viewer->push_state(std::make_shared<const std::string>(std::move(hello)));
+    viewer->push_state(std::make_shared<const std::string>(std::move(hello)), seq_);
     viewers_.push_back(viewer);
 }
 

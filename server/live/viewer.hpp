@@ -22,7 +22,8 @@ struct Outgoing {
 /// What waits for one viewer. Poses and pictures are bounded: the newest wins and the poses that
 /// made room are counted. A queue alone does not keep a slow viewer current, because the kernel's
 /// buffers hold the backlog; so at most kWindow poses go out without an acknowledgement, then one a
-/// second until it comes. Changes of state go first to last, each of them. Thread-safe.
+/// second until it comes. Changes of state go first to last, each of them; sequence numbers grow.
+/// Thread-safe.
 class Viewer {
 public:
     static constexpr std::size_t kWindow = 8;
@@ -32,12 +33,13 @@ public:
     using Shared = std::shared_ptr<const std::string>;
 
     /// Hello, rig and run messages. Beyond kStates the oldest makes room: each of them is complete.
-    void push_state(Shared message);
+    void push_state(Shared message, std::uint64_t seq);
     /// `body` is what encode_pose gives.
     void push_pose(Shared body, std::uint64_t seq, TimeNs now);
     void push_picture(Shared packet);
 
-    /// States before poses before pictures, so that a picture never delays a pose that is there.
+    /// States and poses in their order, then pictures: a picture never delays a pose that is there.
+    /// A state does not wait for a closed window; the poses before it are given up then.
     [[nodiscard]] std::optional<Outgoing> next();
 
     /// Everything up to `seq` was handled.
@@ -55,11 +57,19 @@ private:
         std::uint64_t seq = 0;
         TimeNs pushed = 0;
     };
+    struct State {
+        Shared message;
+        std::uint64_t seq = 0;
+    };
     [[nodiscard]] bool window_open() const;
+    [[nodiscard]] bool pose_is_next() const;
+    Outgoing take_pose();
+    Outgoing take_state();
+    void give_up_oldest_pose();
 
     mutable std::mutex mutex_;
     std::function<void()> wake_;
-    std::deque<Shared> states_;
+    std::deque<State> states_;
     std::deque<Pose> poses_;
     Shared picture_;
     std::deque<std::uint64_t> unanswered_;

@@ -4,6 +4,7 @@
 #include <thread>
 #include <utility>
 
+#include <boost/asio/executor_work_guard.hpp>
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/ip/tcp.hpp>
 #include <boost/asio/post.hpp>
@@ -38,6 +39,8 @@ struct Server::State {
     // Sockets die with the context, and each gives its place back: so the places outlive it.
     Connections connections;
     asio::io_context io{1};
+    // Without it the I/O thread would end with the last socket, and stop() would ask nobody.
+    asio::executor_work_guard<asio::io_context::executor_type> work{io.get_executor()};
     tcp::acceptor acceptor{io};
     asio::steady_timer pause{io};
     asio::thread_pool workers;

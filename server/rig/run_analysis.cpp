@@ -1,11 +1,14 @@
 #include "server/rig/run_analysis.hpp"
 
+#include <algorithm>
+
 #include <nlohmann/json.hpp>
 
 #include "pipeline/analysis/pendulum.hpp"
 #include "pipeline/core/version.hpp"
 #include "pipeline/motion/motion.hpp"
 #include "pipeline/run/chain.hpp"
+#include "server/experiments/result_json.hpp"
 #include "server/lab/utc.hpp"
 #include "server/rig/observer.hpp"
 
@@ -19,66 +22,41 @@ double parameter(const lab::Run& run, const char* name, double otherwise) {
     return found == run.parameters.end() ? otherwise : found->second;
 }
 
-json pinhole_json(const Pinhole& camera) {
+/// What somebody needs to come to the same numbers again. A simulated rig's source carries its
+/// seed: sim://rig-1?seed=1.
+experiments::Provenance provenance(
+    const RunMeasured& measured, const Trajectory& trajectory, const PendulumFit& fit
+) {
+    const auto& samples = trajectory.samples;
+    const auto tracked = std::count_if(samples.begin(), samples.end(), [](const auto& sample) {
+        return sample.status == TrackStatus::tracked;
+    });
     return {
-        {"width", camera.width},
-        {"height", camera.height},
-        {"fx", camera.fx},
-        {"fy", camera.fy},
-        {"cx", camera.cx},
-        {"cy", camera.cy}};
-}
-
-json transform_json(const Eigen::Isometry3d& transform) {
-    json rows = json::array();
-    for (int row = 0; row < 3; ++row) {
-        rows.push_back({transform(row, 0), transform(row, 1), transform(row, 2), transform(row, 3)}
-        );
-    }
-    return rows;
-}
-
-/// What somebody needs to come to the same numbers again.
-json provenance(const RunMeasured& measured) {
-    const RgbdCamera& camera = measured.source.camera;
-    const ChainSettings chain;
-    return {
-        {"program", "kinectlab"},
-        {"version", kVersion},
-        {"run", measured.run.id},
-        {"rig", measured.run.rig},
-        {"started", lab::to_rfc3339(measured.run.started.value_or(measured.run.created))},
-        // A simulated rig's name carries its seed: sim://rig-1?seed=1.
-        {"source", measured.source.name},
-        {"frames", measured.run.frames},
-        {"frames_lost", measured.run.frames_lost},
-        {"configuration",
-         {{"change_threshold_steps", chain.change_threshold_steps},
-          {"min_segment_points", chain.min_segment_points}}},
-        {"calibration",
-         {{"depth", pinhole_json(camera.depth)},
-          {"depth_unit_m", camera.depth_unit_m},
-          {"depth_scale_u", camera.depth_scale_u},
-          {"clock_u", camera.clock_u},
-          {"inverse_depth_step_per_m", camera.noise.inverse_depth_step},
-          {"sigma_steps", camera.noise.sigma_steps},
-          {"T_lab_cam", transform_json(measured.source.T_lab_cam.value_or(level_camera()))},
-          {"T_lab_cam_from", measured.source.T_lab_cam ? "device" : "assumed level"}}},
+        .program_version = kVersion,
+        .source = measured.source.name,
+        .camera = measured.source.camera,
+        .T_lab_cam = measured.source.T_lab_cam.value_or(level_camera()),
+        .lab_frame_assumed = !measured.source.T_lab_cam.has_value(),
+        .first_frame = samples.front().t,
+        .last_frame = samples.back().t,
+        .frames = static_cast<std::size_t>(measured.run.frames),
+        .frames_tracked = static_cast<std::size_t>(tracked),
+        .samples_used = static_cast<std::size_t>(fit.used),
+        .outliers = static_cast<std::size_t>(fit.outliers),
+        .reduced_chi2 = fit.reduced_chi2,
     };
 }
 
-json measurement_json(const Measurement& measurement) {
-    json budget = json::array();
-    for (const BudgetLine& line : measurement.budget) {
-        budget.push_back({{"source", line.source}, {"u", line.u}});
-    }
-    return {
-        {"name", measurement.name},
-        {"value", measurement.value},
-        {"u", measurement.u},
-        {"unit", measurement.unit},
-        {"k", 1},
-        {"budget", budget}};
+/// What only a run on a rig has.
+void add_run(json& provenance, const lab::Run& run) {
+    const ChainSettings chain;
+    provenance["rig"] = run.rig;
+    provenance["run"] = run.id;
+    provenance["started"] = lab::to_rfc3339(run.started.value_or(run.created));
+    provenance["frames_lost"] = run.frames_lost;
+    provenance["configuration"] = {
+        {"change_threshold_steps", chain.change_threshold_steps},
+        {"min_segment_points", chain.min_segment_points}};
 }
 
 /// {"x": […], "y": […], "z": […]}; NaN becomes null.
@@ -131,7 +109,7 @@ Result<RunAnalysis> analyse_run(
             ErrorCode::not_found, "experiment", "\"" + run.experiment + "\" has no analysis"
         );
     }
-    if (trajectories.empty()) {
+    if (trajectories.empty() || trajectories.front().samples.empty()) {
         return fail(ErrorCode::bad_data, "", "nothing was measured", "measure for longer");
     }
     const RgbdCamera& camera = measured.source.camera;
@@ -149,24 +127,23 @@ Result<RunAnalysis> analyse_run(
     );
     if (!result) return tl::unexpected(result.error());
 
-    json results = json::array();
-    for (const Measurement& measurement : result->measurements) {
-        results.push_back(measurement_json(measurement));
-    }
     RunAnalysis analysis;
-    analysis.result_json = json{
-        {"experiment", run.experiment},
-        {"parameters", run.parameters},
-        {"results", results},
-        {"provenance",
-         provenance(measured)}}.dump();
-    analysis.fit_json = fit_json(result->fit, run.started.value_or(run.created)).dump();
     analysis.warnings = result->warnings;
     if (!measured.source.T_lab_cam) {
         analysis.warnings.emplace_back(
             "The camera's place is not calibrated: it was taken to look level along y."
         );
     }
+    json document = experiments::result_to_json(
+        run.experiment,
+        run.parameters,
+        result->measurements,
+        analysis.warnings,
+        provenance(measured, trajectories.front(), result->fit)
+    );
+    add_run(document["provenance"], run);
+    analysis.result_json = document.dump();
+    analysis.fit_json = fit_json(result->fit, run.started.value_or(run.created)).dump();
     return analysis;
 }
 

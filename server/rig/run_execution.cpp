@@ -77,6 +77,7 @@ void RunExecution::enter(RunState state, TimeNs now) {
             stop_bob();
             rig_.writer.flush();
             rig_.active.set_frames(frames_, frames_lost_);
+            run_ = rig_.active.current().value_or(run_);  // with its frames
             RunMeasured measured{run_, rig_.device.source->info(), samples_};
             analysis_ = std::async(
                 std::launch::async,

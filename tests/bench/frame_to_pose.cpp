@@ -1,9 +1,7 @@
 #include <cmath>
 #include <cstring>
 #include <optional>
-#include <stdexcept>
 
-#include "pipeline/run/chain.hpp"
 #include "tests/bench/measurements.hpp"
 #include "tests/bench/peer_stock_chain.hpp"
 #include "tests/bench/swing_frames.hpp"
@@ -18,11 +16,15 @@ struct Timing {
 };
 
 /// Time and error of `find` (frame → centre, if any) over frames, again and again.
-template <class Find>
-Timing time_over(const SwingFrames& frames, std::size_t count, int rounds, Find find) {
+/// `prepare` is called before each frame and not timed.
+template <class Find, class Prepare = void (*)()>
+Timing time_over(
+    const SwingFrames& frames, std::size_t count, int rounds, Find find, Prepare prepare = [] {}
+) {
     double squares = 0.0, found = 0.0, seconds = 0.0, all = 0.0;
     for (int round = 0; round < rounds; ++round) {
         for (std::size_t i = 0; i < frames.swing.size(); i += frames.swing.size() / count) {
+            prepare();
             const double start = thread_seconds();
             const std::optional<Eigen::Vector3d> centre = find(frames.swing[i]);
             seconds += thread_seconds() - start;
@@ -35,20 +37,9 @@ Timing time_over(const SwingFrames& frames, std::size_t count, int rounds, Find 
     return {1e3 * seconds / all, 1e3 * std::sqrt(squares / found), found / all};
 }
 
-Chain chain_for(const SwingFrames& frames) {
-    ObjectSpec bob;
-    bob.name = "bob";
-    bob.radius_m = frames.radius_m;
-    auto chain = Chain::create({frames.camera, {bob}});
-    if (!chain) throw std::runtime_error(to_text(chain.error()));
-    for (const auto& frame : frames.rest)
-        chain->learn(frame).value();
-    chain->track(frames.swing.front()).value();  // the change limits are made at the first frame
-    return std::move(*chain);
-}
-
 Timing time_chain(const SwingFrames& frames) {
     Chain chain = chain_for(frames);
+    (void)chain.track(frames.swing.front());  // the change limits are made at the first frame
     return time_over(
         frames,
         frames.swing.size(),
@@ -77,8 +68,14 @@ double time_copy_ms(const SwingFrames& frames) {
 }
 
 Timing time_stock(const SwingFrames& frames) {
-    StockChain stock({frames.camera, 3.0, frames.radius_m}, frames.rest.front());
-    return time_over(frames, 12, 1, [&](const RgbdFrame& frame) { return stock.track(frame); });
+    StockChain stock({frames.camera, 3.0, frames.radius_m}, frames.before.back());
+    return time_over(
+        frames,
+        12,
+        1,
+        [&](const RgbdFrame& frame) { return stock.track(frame); },
+        [&] { stock.prepare(); }
+    );
 }
 
 }  // namespace

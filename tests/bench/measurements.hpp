@@ -8,6 +8,9 @@ namespace kinectlab::bench {
 
 Figures measure_frame_to_pose();
 Figures measure_sphere_accuracy();
+Figures measure_gravity_from_positions();
+Figures measure_gravity_khoshelham();
+Figures measure_gravity_kinect();
 Figures measure_live_latency();
 
 /// Everything that can be measured. To add something: declare it above and name it here with the
@@ -20,6 +23,9 @@ struct Measurement {
 inline constexpr std::array kMeasurements{
     Measurement{"depth frame to pose, stock chain", measure_frame_to_pose},
     Measurement{"sphere centre accuracy", measure_sphere_accuracy},
+    Measurement{"g, white positions, analysis of 900 positions", measure_gravity_from_positions},
+    Measurement{"g, khoshelham noise", measure_gravity_khoshelham},
+    Measurement{"g, kinect noise", measure_gravity_kinect},
     Measurement{"live: capture to pose at a WebSocket client, frames lost", measure_live_latency},
 };
 

@@ -5,7 +5,6 @@
 
 #include <pcl/ModelCoefficients.h>
 #include <pcl/features/normal_3d.h>
-#include <pcl/filters/extract_indices.h>
 #include <pcl/filters/passthrough.h>
 #include <pcl/octree/octree_pointcloud_changedetector.h>
 #include <pcl/point_types.h>
@@ -54,16 +53,14 @@ struct StockChain::State {
         return near;
     }
 
-    /// The detector compares its two buffers, so the reference goes in before every frame.
-    Cloud::Ptr moved(const Cloud::Ptr& cloud) {
+    void load_reference() {
         octree.deleteTree();
         octree.setInputCloud(reference);
         octree.addPointsFromInputCloud();
         octree.switchBuffers();
-        return added_after_switch(cloud);
     }
 
-    Cloud::Ptr added_after_switch(const Cloud::Ptr& cloud) {
+    Cloud::Ptr moved(const Cloud::Ptr& cloud) {
         octree.setInputCloud(cloud);
         octree.addPointsFromInputCloud();
         std::vector<int> indices;
@@ -79,6 +76,10 @@ StockChain::StockChain(const Settings& settings, const RgbdFrame& reference)
 }
 
 StockChain::~StockChain() = default;
+
+void StockChain::prepare() {
+    state_->load_reference();
+}
 
 std::optional<Eigen::Vector3d> StockChain::track(const RgbdFrame& frame) {
     const Cloud::Ptr moved = state_->moved(state_->cut(frame));

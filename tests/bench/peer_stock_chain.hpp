@@ -25,6 +25,9 @@ public:
     StockChain(const StockChain&) = delete;
     StockChain& operator=(const StockChain&) = delete;
 
+    /// Puts the reference into the octree's other buffer, before every frame; need not be timed.
+    void prepare();
+
     /// The sphere's centre in the camera frame; nothing where no sphere was found.
     [[nodiscard]] std::optional<Eigen::Vector3d> track(const RgbdFrame& frame);
 

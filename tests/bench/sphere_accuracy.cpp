@@ -2,7 +2,6 @@
 #include <cstdio>
 #include <stdexcept>
 
-#include "pipeline/run/chain.hpp"
 #include "tests/bench/measurements.hpp"
 #include "tests/bench/sphere_bound.hpp"
 #include "tests/bench/swing_frames.hpp"
@@ -21,21 +20,15 @@ Accuracy accuracy_at(double distance_m) {
     settings.distance_m = distance_m;
     settings.seconds = 8.0;
     const SwingFrames frames = simulated_swing(settings);
-    ObjectSpec bob;
-    bob.name = "bob";
-    bob.radius_m = frames.radius_m;
-    auto chain = Chain::create({frames.camera, {bob}});
-    if (!chain) throw std::runtime_error(to_text(chain.error()));
-    for (const auto& frame : frames.rest)
-        chain->learn(frame).value();
+    Chain chain = chain_for(frames);
 
     double squares = 0.0, bound = 0.0;
     for (std::size_t i = 0; i < frames.swing.size(); ++i) {
-        const auto sample = chain->track(frames.swing[i]).value().front();
+        const auto sample = chain.track(frames.swing[i]).value().front();
         if (sample.status != TrackStatus::tracked)
             throw std::runtime_error("the bob was lost in frame " + std::to_string(i));
         squares += (sample.p_cam - frames.centre_cam[i]).squaredNorm();
-        bound += centre_bound(frames.camera, frames.centre_cam[i], bob.radius_m.value()).trace();
+        bound += centre_bound(frames.camera, frames.centre_cam[i], frames.radius_m).trace();
     }
     const auto n = static_cast<double>(frames.swing.size());
     return {std::sqrt(squares / n), std::sqrt(bound / n)};

@@ -25,16 +25,29 @@ SwingFrames simulated_swing(const SwingSettings& settings) {
     const auto done = simulate::simulate_run(
         run,
         [&](const RgbdFrame& frame, const simulate::Truth& truth) -> Result<void> {
-            if (truth.motion == simulate::Motion::held) frames.rest.push_back(frame);
             if (truth.motion == simulate::Motion::swinging) {
                 frames.swing.push_back(frame);
                 frames.centre_cam.push_back(T_cam_lab * truth.p_lab);
+            } else {
+                frames.before.push_back(frame);
             }
             return {};
         }
     );
     if (!done) throw std::runtime_error(to_text(done.error()));
     return frames;
+}
+
+Chain chain_for(const SwingFrames& frames) {
+    ObjectSpec bob;
+    bob.name = "bob";
+    bob.radius_m = frames.radius_m;
+    auto chain = Chain::create({frames.camera, {bob}});
+    if (!chain) throw std::runtime_error(to_text(chain.error()));
+    for (const auto& frame : frames.before)
+        if (const auto learned = chain->learn(frame); !learned)
+            throw std::runtime_error(to_text(learned.error()));
+    return std::move(*chain);
 }
 
 double thread_seconds() {

@@ -4,6 +4,7 @@
 
 #include "pipeline/core/camera.hpp"
 #include "pipeline/core/frame.hpp"
+#include "pipeline/run/chain.hpp"
 #include "pipeline/simulate/noise_model.hpp"
 
 namespace kinectlab::bench {
@@ -12,7 +13,7 @@ namespace kinectlab::bench {
 struct SwingFrames {
     RgbdCamera camera;
     double radius_m = 0.05;
-    std::vector<RgbdFrame> rest;  ///< the bob displaced and held, out of the way
+    std::vector<RgbdFrame> before;  ///< the bob at rest, displaced, and held
     std::vector<RgbdFrame> swing;
     std::vector<Eigen::Vector3d> centre_cam;  ///< one for each swing frame, m
 };
@@ -25,6 +26,9 @@ struct SwingSettings {
 };
 
 [[nodiscard]] SwingFrames simulated_swing(const SwingSettings& settings);
+
+/// A chain that tracks the bob with its radius known, and has learned the frames before.
+[[nodiscard]] Chain chain_for(const SwingFrames& frames);
 
 /// CPU time of this thread in seconds: other programs on the machine do not count.
 [[nodiscard]] double thread_seconds();

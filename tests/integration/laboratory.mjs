@@ -12,7 +12,7 @@ export async function eventually(ask, satisfied, { seconds = 30, every = 150 } =
   for (;;) {
     const answer = await ask();
     if (satisfied(answer)) return answer;
-    assert.ok(Date.now() < deadline, `not within ${seconds} s: ${JSON.stringify(answer).slice(0, 600)}`);
+    assert.ok(Date.now() < deadline, `not within ${seconds} s: ${String(JSON.stringify(answer)).slice(0, 600)}`);
     await sleep(every);
   }
 }

@@ -47,7 +47,7 @@ test('asked to stop in the middle of a run, it tells its viewers and ends within
 test('a session outlives the server', async (t) => {
   const server = await startServer(t);
   const admin = await firstAdmin(server);
-  await server.end('SIGTERM');
+  assert.equal((await server.end('SIGTERM')).code, 0);
   admin.server = await startServer(t, { data: server.data });
   assert.equal((await admin.get('/session')).status, 200);
 });

@@ -28,8 +28,6 @@ public:
 
     explicit BallRoom(unsigned seed = 1) : random_(seed) {}
 
-    [[nodiscard]] double wall_at(double, double) const { return wall_m; }
-
     RgbdFrame frame(const std::vector<Ball>& balls) {
         RgbdFrame frame;
         const Pinhole& k = camera.depth;

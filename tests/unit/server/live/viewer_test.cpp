@@ -22,12 +22,27 @@ void push_poses(Viewer& viewer, std::uint64_t from, std::uint64_t to, TimeNs t =
         viewer.push_pose(text("p" + std::to_string(seq)), seq, t);
 }
 
-TEST(Viewer, StatesGoBeforePosesAndPosesBeforePictures) {
+TEST(Viewer, StatesAndPosesGoInOrderAndPicturesLast) {
     Viewer viewer;
     viewer.push_picture(text("picture"));
     push_poses(viewer, 1, 1);
-    viewer.push_state(text("state"));
-    EXPECT_EQ(drain(viewer), (std::vector<std::string>{"state", "p1,\"missed\":0}", "picture"}));
+    viewer.push_state(text("state"), 2);
+    push_poses(viewer, 3, 3);
+    const std::vector<std::string> expected{
+        "p1,\"missed\":0}", "state", "p3,\"missed\":0}", "picture"};
+    EXPECT_EQ(drain(viewer), expected);
+}
+
+TEST(Viewer, AStateDoesNotWaitForAnAnswerAndNoOlderPoseFollowsIt) {
+    Viewer viewer;
+    push_poses(viewer, 1, 8);
+    drain(viewer);
+    push_poses(viewer, 9, 9);
+    viewer.push_state(text("state"), 10);
+    EXPECT_EQ(drain(viewer), std::vector<std::string>{"state"});
+    viewer.acknowledge(10);
+    push_poses(viewer, 11, 11);
+    EXPECT_EQ(drain(viewer), std::vector<std::string>{"p11,\"missed\":1}"});
 }
 
 TEST(Viewer, WithoutAnswersEightPosesGoOutThenTheNewestOneASecond) {
@@ -68,11 +83,11 @@ TEST(Viewer, OneThatDoesNotReadCostsNoMoreThanItsBounds) {
     push_poses(viewer, 1, 10'000);
     for (int i = 0; i < 10'000; ++i) {
         viewer.push_picture(text("picture" + std::to_string(i)));
-        viewer.push_state(text("state" + std::to_string(i)));
+        viewer.push_state(text("state" + std::to_string(i)), 10'001 + i);
     }
     const auto out = drain(viewer);
-    EXPECT_EQ(out.size(), Viewer::kStates + Viewer::kWindow);
-    EXPECT_EQ(out[Viewer::kStates - 1], "state9999");
+    EXPECT_EQ(out.size(), Viewer::kWindow + Viewer::kStates);
+    EXPECT_EQ(out.back(), "state9999");
     EXPECT_EQ(viewer.missed(), 10'000 - Viewer::kWindow);
 }
 

@@ -119,7 +119,7 @@ TEST_F(RenderedRigWorkerTest, MeasuresGravityFromPreparationToResult) {
     EXPECT_NEAR(g["value"], 9.81, 4.0 * g["u"].get<double>());
     EXPECT_FALSE(g["budget"].empty());
     const auto& provenance = result["provenance"];
-    for (const char* key : {"version", "source", "configuration", "calibration"}) {
+    for (const char* key : {"version", "source", "configuration", "camera", "rig"}) {
         EXPECT_TRUE(provenance.contains(key)) << key;
     }
     const auto fit = nlohmann::json::parse(store_->results.latest(done.id)->fit_json);
