@@ -8,7 +8,7 @@ import { changePassword, mainButton, readMeasurement, signIn, stateSentence, tab
 
 const adminPassword = 'swing low sweet chariot';
 const studentPassword = 'an arc of ten degrees';
-const measured_s = 12;
+const measured_s = 14;
 
 const endings = [];
 const lifetime = { after: (end) => endings.unshift(end) };
@@ -107,6 +107,7 @@ test('the camera picture is there and moves, the run is prepared and released', 
     },
     [camera, still.hash],
   );
+  await page.getByText(/^([5-9]|1\d) of 14/).waitFor();
   findings.push(...(await inspect(page, '10-measuring')));
 });
 

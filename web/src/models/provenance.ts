@@ -3,18 +3,20 @@ import { humanise } from './words';
 export interface Fact {
   label: string;
   value: string;
-  /** 0 for what stands at the top. */
-  depth: number;
+  /** Among the few that everybody wants to see; the others are for those who check. */
+  first: boolean;
 }
 
-/** Nested provenance as a flat list to read: `{program: {version: "1"}}` → `Program, version: 1`. */
-export function facts(provenance: Record<string, unknown>, prefix = '', depth = 0): Fact[] {
+const everybodyWants = ['program', 'version', 'rig', 'source', 'started'];
+
+/** Nested provenance as a flat list to read: `{camera: {fx: 525}}` → `Camera, fx: 525`. */
+export function facts(provenance: Record<string, unknown>, prefix = ''): Fact[] {
   return Object.entries(provenance).flatMap(([key, value]) => {
-    const name = key.replaceAll('_', ' ');
-    const label = prefix ? `${prefix}, ${name}` : humanise(key);
+    const label = prefix ? `${prefix}, ${key.replaceAll('_', ' ')}` : humanise(key);
     if (value === null || value === undefined || value === '') return [];
-    if (typeof value === 'object' && !Array.isArray(value)) return facts(value as Record<string, unknown>, label, depth + 1);
-    return [{ label, value: Array.isArray(value) ? value.map(plain).join(', ') : plain(value), depth }];
+    if (typeof value === 'object' && !Array.isArray(value)) return facts(value as Record<string, unknown>, label);
+    const text = Array.isArray(value) ? value.map(plain).join(', ') : plain(value);
+    return [{ label, value: text, first: prefix === '' && everybodyWants.includes(key) }];
   });
 }
 

@@ -1,4 +1,5 @@
 /** Names of the wire as a student would say them. */
+import type { Rig } from '../api/types';
 
 const parameterLabels: Record<string, string> = {
   length_m: 'Length of the pendulum',
@@ -6,8 +7,8 @@ const parameterLabels: Record<string, string> = {
   bob_radius_m: 'Radius of the bob',
   amplitude_deg: 'Starting angle',
   gravity: 'Gravity',
-  latitude_deg: 'Latitude',
   damping_per_s: 'Damping',
+  latitude_deg: 'Latitude',
   duration_s: 'How long to measure',
 };
 
@@ -33,6 +34,16 @@ const sourceLabels: Record<string, string> = {
   'depth scale': 'Depth scale of the camera',
 };
 
+/** As a student meets them: the pendulum first, then how it is measured; unknown ones last. */
+export function inReadingOrder(parameters: Record<string, number>): [string, number][] {
+  const order = Object.keys(parameterLabels);
+  const place = (name: string) => (order.includes(name) ? order.indexOf(name) : order.length);
+  return Object.entries(parameters).sort(([a], [b]) => place(a) - place(b));
+}
+
+const rigStateWords: Record<Rig['state'], string> = { idle: 'Free', busy: 'In use', offline: 'Switched off' };
+
+export const rigStateWord = (state: Rig['state']): string => rigStateWords[state];
 export const parameterLabel = (name: string): string => parameterLabels[name] ?? humanise(name);
 export const parameterUnit = (name: string): string => parameterUnits[name] ?? '';
 export const quantityLabel = (name: string): string => quantityLabels[name] ?? humanise(name);

@@ -1,5 +1,6 @@
 import { expect, it } from 'vitest';
 import { facts } from '../../src/models/provenance';
+import { inReadingOrder } from '../../src/models/words';
 import { budgetBars, forPeople, rms } from '../../src/models/quantity';
 
 it('turns angles into degrees, uncertainty and budget with them', () => {
@@ -21,10 +22,16 @@ it('takes the scatter of what was measured', () => {
   expect(rms([null])).toBeNaN();
 });
 
+it('lists settings as a student meets them, what it does not know last', () => {
+  expect(inReadingOrder({ zeta: 1, duration_s: 30, amplitude_deg: 10, length_m: 1 }).map(([name]) => name)).toEqual([
+    'length_m', 'amplitude_deg', 'duration_s', 'zeta',
+  ]);
+});
+
 it('lays nested provenance out flat', () => {
   expect(facts({ program: 'kinectlab 0.1', device: { uri: 'sim://1', none: null }, seeds: [1, 2] })).toEqual([
-    { label: 'Program', value: 'kinectlab 0.1', depth: 0 },
-    { label: 'Device, uri', value: 'sim://1', depth: 1 },
-    { label: 'Seeds', value: '1, 2', depth: 0 },
+    { label: 'Program', value: 'kinectlab 0.1', first: true },
+    { label: 'Device, uri', value: 'sim://1', first: false },
+    { label: 'Seeds', value: '1, 2', first: false },
   ]);
 });
