@@ -29,10 +29,11 @@ private:
     std::uint32_t state_ = 2463534242U;
 };
 
-/// Half the window of the normals' fit: a quarter of the radius if all pixels were one disc.
+/// Half the window of the normals' fit: a quarter of the radius if all pixels were one disc, and
+/// no more than a candidate needs.
 int half_window_for(std::size_t pixels) {
     const double radius_px = std::sqrt(static_cast<double>(pixels) / std::numbers::pi);
-    return static_cast<int>(std::clamp(radius_px / 4.0, 1.5, 5.0));
+    return static_cast<int>(std::clamp(radius_px / 4.0, 1.5, 3.5));
 }
 
 std::optional<Sphere> through(

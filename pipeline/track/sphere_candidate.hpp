@@ -25,7 +25,7 @@ public:
     );
     [[nodiscard]] std::span<const OrientedPoint> points() const { return {points_.data(), size_}; }
 
-    static constexpr std::size_t kPoints = 96;
+    static constexpr std::size_t kPoints = 64;
 
 private:
     std::array<OrientedPoint, kPoints> points_;

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numeric>
 
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
@@ -48,6 +47,18 @@ struct Point {
     float per_step, gate;
     float lateral;  ///< (σ_lateral / (σ f))², px² / steps²
 };
+
+Point point_at(const Sphere& sphere, double rim_m) {
+    const Eigen::Vector3f c = sphere.centre_cam.cast<float>();
+    const double power = sphere.centre_cam.squaredNorm() - sphere.radius * sphere.radius;
+    const double chosen = std::max(0.5 * sphere.radius, sphere.radius - rim_m);
+    Point at{};
+    at.cx = c.x(), at.cy = c.y(), at.cz = c.z();
+    at.radius = static_cast<float>(sphere.radius);
+    at.power = static_cast<float>(power);
+    at.chosen = static_cast<float>(chosen);
+    return at;
+}
 
 /// The square of meet()'s root from the cross product, r² d·d - |d x c|², which loses no digits in
 /// single precision.
@@ -186,8 +197,6 @@ void SphereFitter::gather(std::span<const std::uint16_t> depth, const Sphere& sp
 }
 
 SphereFitter::Equations SphereFitter::equations(const Sphere& sphere, const Step& step) {
-    const Eigen::Vector3f c = sphere.centre_cam.cast<float>();
-    const double power = sphere.centre_cam.squaredNorm() - sphere.radius * sphere.radius;
     const Pixels pixels{
         s_.size(),
         x_.data(),
@@ -198,16 +207,10 @@ SphereFitter::Equations SphereFitter::equations(const Sphere& sphere, const Step
         residual_.data(),
         steep_.data(),
         {slope_[0].data(), slope_[1].data(), slope_[2].data(), slope_[3].data()}};
-    const Point at{
-        c.x(),
-        c.y(),
-        c.z(),
-        static_cast<float>(sphere.radius),
-        static_cast<float>(power),
-        static_cast<float>(std::max(0.5 * sphere.radius, sphere.radius - step.rim_m)),
-        static_cast<float>(1.0 / scale_.inverse_depth_step),
-        static_cast<float>(step.gate_steps),
-        static_cast<float>(lateral())};
+    Point at = point_at(sphere, step.rim_m);
+    at.per_step = static_cast<float>(1.0 / scale_.inverse_depth_step);
+    at.gate = static_cast<float>(step.gate_steps);
+    at.lateral = static_cast<float>(lateral());
     if (step.choose_pixels) choose(pixels, at);
     linearise(pixels, at);
     const auto sum = [this](const std::vector<float>& a, const std::vector<float>& b) {
@@ -224,10 +227,8 @@ SphereFitter::Equations SphereFitter::equations(const Sphere& sphere, const Step
             sums.information(row, column) = sums.information(column, row) = value;
         }
     }
-    const double weights = std::accumulate(weight_.begin(), weight_.end(), 0.0);
-    const double steepness =
-        std::inner_product(weight_.begin(), weight_.end(), steep_.begin(), 0.0);
-    sums.pixels = weights + lateral() * steepness;
+    // used is 1 wherever a weight is not 0.
+    sums.pixels = sum(used_, used_) + lateral() * sum(used_, steep_);
     sums.squares = sum(residual_, residual_);
     return sums;
 }
@@ -335,27 +336,32 @@ double SphereFitter::correlation_inflation() {
 }
 
 /// How much of the sphere the picture shows, and whether the surface ends where the sphere does.
+/// Follows equations() of the same sphere, whose residuals it reads.
 void SphereFitter::assess(SphereFit& fit, double sigma) const {
     const Sphere& sphere = fit.sphere;
-    const double r2 = sphere.radius * sphere.radius;
+    const Point at = point_at(sphere, 0.0);
+    const double r = sphere.radius, z = sphere.centre_cam.z();
+    const auto inside = static_cast<float>(std::sqrt(1.0 - kMinCosine * kMinCosine) * r);
+    const auto ring = static_cast<float>(kRing * r), margin = static_cast<float>(kMargin * r);
+    // Disparities of what may surround the sphere and is neither behind nor far before it.
+    const auto behind = static_cast<float>(scale_.steps_at(z + 0.5 * r));
+    const auto before = static_cast<float>(scale_.steps_at(std::max(0.1 * z, z - 2.0 * r)));
+    const auto gate = static_cast<float>(kLastGateSigmas * sigma);
     int covered = 0, read = 0, inliers = 0, around = 0, alone = 0;
     double squares = 0.0;
     for (std::size_t i = 0; i < static_cast<std::size_t>(rows_ * columns_); ++i) {
-        const Eigen::Vector3d ray(x_[i], y_[i], 1.0);
-        const double miss2 = ray.cross(sphere.centre_cam).squaredNorm() / ray.squaredNorm();
-        if (miss2 < (1.0 - kMinCosine * kMinCosine) * r2) {
+        const float x = x_[i], y = y_[i], s = s_[i];
+        const float d2 = x * x + y * y + 1.0F;
+        if (root2_of(x, y, d2, inside, at) > 0.0F) {
             ++covered;
-            if (s_[i] == 0.0F) continue;
+            if (s == 0.0F) continue;
             ++read;
-            const double e = s_[i] - scale_.steps_at(1.0 / meet(ray, sphere).w);
-            if (std::abs(e) > kLastGateSigmas * sigma) continue;
+            if (std::abs(residual_[i]) > gate) continue;
             ++inliers;
-            squares += e * e;
-        } else if (miss2 > kRing * kRing * r2 && miss2 < kMargin * kMargin * r2) {
+            squares += residual_[i] * residual_[i];
+        } else if (root2_of(x, y, d2, ring, at) < 0.0F && root2_of(x, y, d2, margin, at) > 0.0F) {
             ++around;
-            const double z = s_[i] == 0.0F ? 0.0 : scale_.metres(s_[i]);
-            const double behind = z - sphere.centre_cam.z();
-            if (z == 0.0 || behind > 0.5 * sphere.radius || behind < -2.0 * sphere.radius) ++alone;
+            if (s < behind || s > before) ++alone;
         }
     }
     fit.quality.points = inliers * stride_ * stride_;

@@ -49,7 +49,7 @@ Outcome outcome_of(simulate::NoiseModel noise, double seconds) {
 }
 
 TEST(ChainOnSimulatedRig, FollowsTheBobWithIndependentNoise) {
-    const Outcome outcome = outcome_of(simulate::NoiseModel::khoshelham, 8.0);
+    const Outcome outcome = outcome_of(simulate::NoiseModel::khoshelham, 6.0);
     EXPECT_EQ(outcome.false_tracks, 0);
     EXPECT_EQ(outcome.lost, 0) << "of " << outcome.swinging;
     EXPECT_GT(outcome.mean_square_over_claimed, 0.7);
@@ -57,7 +57,7 @@ TEST(ChainOnSimulatedRig, FollowsTheBobWithIndependentNoise) {
 }
 
 TEST(ChainOnSimulatedRig, FollowsTheBobWithAKinectsNoise) {
-    const Outcome outcome = outcome_of(simulate::NoiseModel::kinect, 60.0);
+    const Outcome outcome = outcome_of(simulate::NoiseModel::kinect, 20.0);
     EXPECT_EQ(outcome.false_tracks, 0);
     EXPECT_LT(outcome.lost, outcome.swinging / 50);
     EXPECT_LE(outcome.longest_gap, 3);
