@@ -43,18 +43,20 @@ RunExecution::RunExecution(
     : rig_(rig), run_(run), ready_until_(ready_until), limits_(limits), last_frame_at_(now) {}
 
 void RunExecution::step(TimeNs now, const RgbdFrame* frame, std::uint32_t missed) {
-    if (over_) return;
     if (frame != nullptr) last_frame_at_ = now;
-    // A change may call for the next at once; each is acted on only after it was stored.
-    for (auto run = rig_.active.current(); run && entered_ != run->state;
+    act_on_changes(now);
+    if (over_ || !entered_) return;
+    if (frame != nullptr) observe(*entered_, now, *frame, missed);
+    watch(*entered_, now);
+}
+
+/// A change may call for the next at once; each is acted on only after it was stored.
+void RunExecution::act_on_changes(TimeNs now) {
+    for (auto run = rig_.active.current(); !over_ && run && entered_ != run->state;
          run = rig_.active.current()) {
         run_ = *run;
         enter(run_.state, now);
-        if (over_) return;
     }
-    if (!entered_) return;
-    if (frame != nullptr) observe(*entered_, now, *frame, missed);
-    watch(*entered_, now);
 }
 
 void RunExecution::enter(RunState state, TimeNs now) {
@@ -212,14 +214,14 @@ bool RunExecution::over() const {
 }
 
 void RunExecution::end(RunEvent event, TimeNs now, const std::string& reason) {
-    step(now, nullptr, 0);  // what is stored already is acted on first
+    act_on_changes(now);
     if (over_) return;
     if (analysis_.valid()) {
         analysis_.wait();
         finish_analysis(now);
     }
     advance(event, now, reason);
-    step(now, nullptr, 0);
+    act_on_changes(now);
 }
 
 void RunExecution::save_frames() {

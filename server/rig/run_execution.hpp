@@ -62,6 +62,7 @@ public:
     [[nodiscard]] const std::string& trouble() const { return trouble_; }
 
 private:
+    void act_on_changes(TimeNs now);
     void enter(lab::RunState state, TimeNs now);
     void observe(lab::RunState state, TimeNs now, const RgbdFrame& frame, std::uint32_t missed);
     void watch(lab::RunState state, TimeNs now);

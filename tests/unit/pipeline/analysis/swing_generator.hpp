@@ -90,7 +90,8 @@ inline Trajectory generate(const Swing& s) {
     const int n = static_cast<int>(std::lround((release + s.seconds) * s.rate));
     for (int i = 0; i < n; ++i) {
         MotionSample m;
-        const double jitter = s.jitter > 0.0 ? s.jitter * uniform(random) : 0.0;
+        double jitter = s.jitter > 0.0 ? s.jitter * uniform(random) : 0.0;
+        if (i == 0) jitter = std::abs(jitter);  // not before the release
         m.t = kStart + from_seconds(i / s.rate + jitter);
         const double t = to_seconds(m.t - kStart) - release;
         Eigen::Vector3d r = hanging(amplitude);

@@ -96,7 +96,7 @@ TEST_F(RigServiceTest, CarriesOutARunOnTheSimulatedRigAndKeepsItAcrossARestart) 
     const auto second = start(ada_, {});
     ASSERT_TRUE(second) << to_text(second.error());
     service_->shutdown();
-    EXPECT_EQ(state(second->id), RunState::interrupted);
+    EXPECT_EQ(state(second->id), RunState::interrupted) << store_->runs.find(second->id)->reason;
     EXPECT_EQ(state(run->id), RunState::completed);
 }
 
