@@ -42,7 +42,9 @@ private:
 /// the midpoint of the shortest segment between the two normals' lines, the radius the mean
 /// distance (the paper's Table I). Nothing where no pair gives a radius in range. Deterministic.
 [[nodiscard]] std::optional<Sphere> sphere_candidate(
-    std::span<const OrientedPoint> points, const ObjectSpec& spec, const DisparityScale& scale
+    std::span<const OrientedPoint> points,
+    const SphereSettings& settings,
+    const DisparityScale& scale
 );
 
 }  // namespace kinectlab

@@ -142,7 +142,7 @@ std::vector<Trajectory> trajectories_of(const TrackedRecording& recording) {
     for (std::size_t i = 0; i < recording.objects.size(); ++i) {
         const auto& object = recording.objects[i];
         const auto& samples = recording.samples[i];
-        if (object.method == "change") {
+        if (finds_many(object)) {
             for (auto& trajectory : ranked(object.name, samples, T_lab_cam))
                 trajectories.push_back(std::move(trajectory));
         } else {

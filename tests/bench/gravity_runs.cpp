@@ -38,9 +38,7 @@ simulate::RunSettings run_settings(std::uint64_t seed, simulate::NoiseModel nois
 Trajectory tracked_run(std::uint64_t seed, simulate::NoiseModel noise) {
     const simulate::RunSettings run = run_settings(seed, noise);
     const auto rig = or_throw(simulate::SimulatedRig::create(run.rig));
-    ObjectSpec bob;
-    bob.name = "bob";
-    bob.radius_m = run.rig.pendulum.bob_radius_m;
+    const ObjectSpec bob{"bob", SphereSettings{.radius_m = run.rig.pendulum.bob_radius_m}};
     Chain chain = or_throw(Chain::create({rig.camera(), {bob}}));
     std::vector<TrackSample> samples;
     or_throw(simulate::simulate_run(

@@ -11,10 +11,7 @@ using test::Ball;
 using test::BallRoom;
 
 ObjectSpec ball_named(std::string name, std::optional<double> radius_m = 0.05) {
-    ObjectSpec spec;
-    spec.name = std::move(name);
-    spec.radius_m = radius_m;
-    return spec;
+    return {std::move(name), SphereSettings{.radius_m = radius_m}};
 }
 
 Chain chain_for(const BallRoom& room, std::vector<ObjectSpec> objects) {
@@ -164,9 +161,7 @@ TEST(Chain, AHandIsNoBob) {
 
 TEST(Chain, MethodChangeGivesASampleForEachThingThatMoves) {
     BallRoom room;
-    ObjectSpec moved;
-    moved.name = "moved";
-    moved.method = "change";
+    const ObjectSpec moved{"moved", ChangeTrackSettings{}};
     Chain chain = chain_for(room, {moved});
     ASSERT_TRUE(chain.learn(room.frame({})));
     EXPECT_TRUE(track(chain, room.frame({})).empty());
