@@ -11,7 +11,7 @@ set(KINECTLAB_SANITIZE "" CACHE STRING "Sanitizers for -fsanitize=, comma separa
 # Nobody reads errno or floating-point exceptions; without them loops with a comparison vectorise.
 add_compile_options(-Wall -Wextra -Wpedantic -Wno-missing-field-initializers -fno-math-errno -fno-trapping-math)
 # GCC 12 warns of buffers inside its own and Eigen's inlined code.
-add_compile_options($<$<CONFIG:RelWithDebInfo>:-Wno-array-bounds> -Wno-stringop-overflow -Wno-restrict -Wno-maybe-uninitialized)
+add_compile_options($<$<CONFIG:RelWithDebInfo>:-Wno-array-bounds> -Wno-stringop-overflow -Wno-maybe-uninitialized)
 set(CMAKE_CXX_FLAGS_RELWITHDEBINFO "-O3 -g1 -DNDEBUG")
 if(KINECTLAB_WERROR)
   add_compile_options(-Werror)

@@ -1,3 +1,4 @@
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "server/api/body.hpp"
@@ -27,7 +28,7 @@ Result<void> check_rig(const Call& call, const std::string& rig, const std::stri
         return fail(
             ErrorCode::invalid_argument,
             "rig",
-            "there is no rig '" + rig.substr(0, 40) + "'",
+            fmt::format("there is no rig '{}'", rig.substr(0, 40)),
             "give one that GET /api/v1/rigs lists"
         );
     }
@@ -36,7 +37,7 @@ Result<void> check_rig(const Call& call, const std::string& rig, const std::stri
     return fail(
         ErrorCode::invalid_argument,
         "experiment",
-        "'" + experiment.substr(0, 40) + "' is not possible on this rig",
+        fmt::format("'{}' is not possible on this rig", experiment.substr(0, 40)),
         "give one of the rig's experiments"
     );
 }

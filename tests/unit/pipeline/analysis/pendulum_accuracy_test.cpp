@@ -19,7 +19,8 @@ TEST_P(PendulumAccuracy, GivesBackGAndDamping) {
     const auto result = analyse_pendulum(generate(s), exact_settings(s));
     ASSERT_TRUE(result) << to_text(result.error());
     EXPECT_NEAR(named(*result, "g").value / s.g, 1.0, 1e-6);
-    EXPECT_NEAR(named(*result, "damping").value, s.damping, 2e-6) << "1e-6 at 75° is the integrator's";
+    EXPECT_NEAR(named(*result, "damping").value, s.damping, 2e-6)
+        << "1e-6 at 75° is the integrator's";
     EXPECT_EQ(result->fit.outliers, 0);
 }
 
