@@ -1,12 +1,13 @@
 #!/usr/bin/env bash
 # Builds the program and the page. Sourced by ./run and ./test, from the project's root.
 
-# npm's packages of a folder, again only when its lock file has changed.
+# npm's packages of a folder as its lock file pins them, again only when that has changed. Not npm ci: the
+# lock file may lack the binaries for other platforms, and npm ci would refuse it for that.
 build_node_modules() { # FOLDER
   local stamp=$1/node_modules/.kinectlab-lock
   cmp -s "$1/package-lock.json" "$stamp" 2>/dev/null && return 0
   echo "== Fetching the npm packages of $1" >&2
-  (cd "$1" && npm ci --no-fund --no-audit --loglevel=error >&2) && cp "$1/package-lock.json" "$stamp"
+  (cd "$1" && npm install --no-save --no-fund --no-audit --loglevel=error >&2) && cp "$1/package-lock.json" "$stamp"
 }
 
 # The page, again only when one of its sources is newer than what was built.

@@ -118,14 +118,12 @@ Result<SwingParameters> follow_free_swing(
     double noise = 0.0;
     for (bool whole = false;; whole = range.begin_found && range.end_found) {
         const Samples known = samples.subspan(range.begin, range.end - range.begin);
-        if ((known.back().t - known.front().t) / guess.period < kFewestPeriods - 0.1)
+        const double periods = (known.back().t - known.front().t) / guess.period;
+        if (whole && periods < kFewestPeriods - 0.1)
             return fail(
                 ErrorCode::bad_data,
                 "samples",
-                fmt::format(
-                    "only {:.1f} periods of free swing were found",
-                    (known.back().t - known.front().t) / guess.period
-                ),
+                fmt::format("only {:.1f} periods of free swing were found", periods),
                 "let the pendulum swing freely for at least three periods, ten or more for a good "
                 "result"
             );

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include <Eigen/Cholesky>
@@ -18,9 +19,9 @@ constexpr double kFewestPeriods = 3.0;
 constexpr double kWidest = 0.985;  // sin 80°
 
 struct Sine {
-    double misfit = 0.0;                      // root mean square over amplitude
-    double widest = 0.0;                      // farthest point from the middle, m
-    Eigen::Vector2d middle, place, velocity;  // the last two at the first sample
+    double misfit = std::numeric_limits<double>::infinity();  // root mean square over amplitude
+    double widest = 0.0;                                      // farthest point from the middle, m
+    Eigen::Vector2d middle, place, velocity;                  // the last two at the first sample
 };
 
 /// A sine whose amplitude and phase drift, fitted with wild samples weighted down.
@@ -58,6 +59,34 @@ Sine fit_sine(std::span<const SwingSample> samples, double f, const Eigen::Vecto
         if (weight[i] > 0.4)  // not an outlier
             sine.widest = std::max(sine.widest, (xy.row(i) - c.row(0)).norm());
     return sine;
+}
+
+struct Window {
+    Sine sine;
+    std::size_t begin = 0;
+    std::size_t end = 0;
+};
+
+/// Of all windows of three periods, half a period apart, the one most like a sine.
+Window best_window(std::span<const SwingSample> samples, double f) {
+    const Eigen::Vector2d weights = axis_weights(samples);
+    const double length_s = kFewestPeriods / f;
+    Window best;
+    std::size_t begin = 0;
+    std::size_t end = 0;
+    for (double start = samples.front().t; start + length_s <= samples.back().t + 1e-9;
+         start += 0.5 / f) {
+        while (samples[begin].t < start)
+            ++begin;
+        while (end < samples.size() && samples[end].t <= start + length_s)
+            ++end;
+        const bool seen_throughout =
+            end - begin >= 12 && samples[end - 1].t - samples[begin].t >= 2.5 / f;
+        if (!seen_throughout) continue;
+        const Sine sine = fit_sine(samples.subspan(begin, end - begin), f, weights);
+        if (sine.misfit < best.sine.misfit) best = {sine, begin, end};
+    }
+    return best;
 }
 
 SwingParameters to_parameters(
@@ -107,48 +136,29 @@ Result<SwingGuess> guess_swing(std::span<const SwingSample> samples, double leng
             "record at least three periods, ten or more for a good result"
         );
 
-    const Eigen::Vector2d weights = axis_weights(samples);
-    SwingGuess guess;
-    guess.period = 1.0 / *f;
-    Sine best;
-    best.misfit = 1e9;
-    std::size_t begin = 0;
-    std::size_t end = 0;
-    for (double start = samples.front().t; start + kFewestPeriods / *f <= samples.back().t + 1e-9;
-         start += 0.5 / *f) {
-        while (samples[begin].t < start)
-            ++begin;
-        while (end < samples.size() && samples[end].t <= start + kFewestPeriods / *f)
-            ++end;
-        if (end - begin < 12) continue;
-        const Sine sine = fit_sine(samples.subspan(begin, end - begin), *f, weights);
-        if (sine.misfit >= best.misfit) continue;
-        best = sine;
-        guess.begin = begin;
-        guess.end = end;
-    }
-    if (best.misfit > 0.5)
+    const Window best = best_window(samples, *f);
+    if (best.sine.misfit > 0.5)
         return fail(
             ErrorCode::bad_data,
             "samples",
-            "no three periods of a free swing were found in the motion",
+            "no three periods of a free swing below 80° were found in the motion",
             "let the pendulum swing freely, without touching it, for at least three periods"
         );
-    if (best.widest > kWidest * length_m)
+    if (best.sine.widest > kWidest * length_m)
         return fail(
             ErrorCode::bad_data,
             "samples",
             fmt::format(
                 "the bob moves {:.3f} m to the side on a length of {:.3f} m: an amplitude beyond "
                 "80°",
-                best.widest,
+                best.sine.widest,
                 length_m
             ),
             "release it from a smaller angle, or correct length_m"
         );
-    guess.parameters =
-        to_parameters(samples.subspan(guess.begin, guess.end - guess.begin), best, length_m, *f);
-    return guess;
+    const auto window = samples.subspan(best.begin, best.end - best.begin);
+    return SwingGuess{
+        best.begin, best.end, 1.0 / *f, to_parameters(window, best.sine, length_m, *f)};
 }
 
 }  // namespace kinectlab

@@ -6,17 +6,19 @@
 
 #include <fmt/format.h>
 
+#include "pipeline/analysis/median.hpp"
 #include "pipeline/analysis/swing_measurements.hpp"
 
 namespace kinectlab {
 namespace {
 
+constexpr double kFrame = 0.05;  // s
 constexpr double kDegree = std::numbers::pi / 180.0;
 
-double value(const std::vector<Measurement>& all, std::string_view name) {
+Measurement named(const std::vector<Measurement>& all, std::string_view name) {
     const auto it =
         std::find_if(all.begin(), all.end(), [&](const auto& m) { return m.name == name; });
-    return it == all.end() ? std::nan("") : it->value;
+    return it == all.end() ? Measurement{} : *it;
 }
 
 }  // namespace
@@ -30,14 +32,14 @@ std::vector<std::string> swing_warnings(
     std::vector<std::string> warnings;
     const SwingSample& first = samples[fit.begin];
     const SwingSample& last = samples[fit.end - 1];
-    const double periods = (last.t - first.t) / value(measurements, "period");
+    const double periods = (last.t - first.t) / named(measurements, "period").value;
     const double left_out_before = first.t - samples.front().t;
     const double left_out_after = samples.back().t - last.t;
-    if (left_out_before > 0.0)
+    if (left_out_before > kFrame)
         warnings.push_back(fmt::format(
             "The first {:.1f} s were not a free swing and were left out.", left_out_before
         ));
-    if (left_out_after > 0.0)
+    if (left_out_after > kFrame)
         warnings.push_back(fmt::format(
             "The last {:.1f} s were not a free swing and were left out.", left_out_after
         ));
@@ -49,11 +51,8 @@ std::vector<std::string> swing_warnings(
     std::vector<double> off;
     for (const auto& r : fit.residuals)
         off.push_back(r.norm());
-    std::nth_element(
-        off.begin(), off.begin() + static_cast<std::ptrdiff_t>(off.size() / 2), off.end()
-    );
-    const double noise = off[off.size() / 2];
-    const double amplitude = value(measurements, "amplitude");
+    const double noise = median(std::move(off));
+    const double amplitude = named(measurements, "amplitude").value;
     const double path = settings.length_m * std::sin(amplitude);
     if (path < 20.0 * noise)
         warnings.push_back(fmt::format(
@@ -100,15 +99,15 @@ std::vector<std::string> swing_warnings(
             "right?",
             fit.parameters.tilt.norm() / kDegree
         ));
-    const double g = value(measurements, "g");
-    const double g_u = measurements.front().u;
-    if (g < 9.76 - 4.0 * g_u || g > 9.84 + 4.0 * g_u)
+    const Measurement g = named(measurements, "g");
+    if (g.value < 9.76 - 4.0 * g.u || g.value > 9.84 + 4.0 * g.u)
         warnings.push_back(fmt::format(
             "g = {:.3f} m/s² is not found on the Earth's ground (9.76 to 9.84 m/s²); is length_m "
             "right?",
-            g
+            g.value
         ));
-    if (value(measurements, "damping") < -4.0 * measurements[4].u)
+    const Measurement damping = named(measurements, "damping");
+    if (damping.value < -4.0 * damping.u)
         warnings.emplace_back("The swing grew by itself; something pushes the pendulum.");
     const double earth = earth_turning(settings.latitude_deg);
     if (std::abs(fit.free_turning - earth) > 5.0 * fit.free_turning_u)

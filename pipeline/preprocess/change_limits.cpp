@@ -94,6 +94,7 @@ ChangeLimits::ChangeLimits(const RgbdCamera& camera, double threshold_steps)
       threshold_steps_(static_cast<float>(threshold_steps)) {
     const auto row = static_cast<std::size_t>(width_), rows = static_cast<std::size_t>(height_);
     reach_.assign(row * rows, 0);
+    trusted_.assign(row * rows, 1);
     nearest_rows_.assign(row * rows, 0.0F);
     slack_.assign(row * rows, threshold_steps_);
     filled_.assign(row, 0.0F);
@@ -146,7 +147,7 @@ void ChangeLimits::nearest_row(const ReferenceScene& reference, int row, std::sp
     const auto first = static_cast<std::size_t>(row) * size;
     const auto disparity = reference.disparity().subspan(first, size);
     std::copy(disparity.begin(), disparity.end(), filled_.begin());
-    fill_holes(filled_);
+    fill_holes(filled_, std::span(trusted_).subspan(first, size));
     const auto rounding = static_cast<float>(scale_.rounding_steps(1.0));
     add_slack(filled_.data(), slack_.data() + first, size, rounding);
     widen(filled_.data(), nearest.data(), width_);
@@ -155,17 +156,22 @@ void ChangeLimits::nearest_row(const ReferenceScene& reference, int row, std::sp
 
 /// A hole as narrow as a shadow takes the farther of its two sides; a wider one stays unknown, so
 /// that an object before an invalid background still counts.
-void ChangeLimits::fill_holes(std::span<float> row) const {
+void ChangeLimits::fill_holes(std::span<float> row, std::span<std::uint8_t> trusted) {
     const auto none = [](float s) {
         return s == 0.0F;
     };
+    std::fill(trusted.begin(), trusted.end(), std::uint8_t{1});
     auto hole = std::find_if(row.begin(), row.end(), none);
     while (hole != row.end()) {
         const auto end = std::find_if_not(hole, row.end(), none);
         const float left = hole == row.begin() ? 0.0F : *(hole - 1);
         const float right = end == row.end() ? 0.0F : *end;
         const float side = left > 0.0F && right > 0.0F ? std::min(left, right) : left + right;
-        if (end - hole <= kWidestShadowPx) std::fill(hole, end, side);
+        if (end - hole <= kWidestShadowPx) {
+            std::fill(hole, end, side);
+            const auto first = trusted.begin() + (hole - row.begin());
+            std::fill(first, first + (end - hole), std::uint8_t{0});
+        }
         hole = std::find_if(end, row.end(), none);
     }
 }

@@ -23,17 +23,21 @@ public:
     void update(const ReferenceScene& reference, RowRange rows);
 
     [[nodiscard]] std::span<const std::uint16_t> reach() const { return reach_; }
+    /// 1 where a change can be believed: the scene was seen there, or nothing is there far and
+    /// wide. 0 in narrow holes: at edges and in shadows sensors see phantoms that come and go.
+    [[nodiscard]] std::span<const std::uint8_t> trusted() const { return trusted_; }
     [[nodiscard]] std::optional<double> cut_steps() const { return cut_steps_; }
 
 private:
     void nearest_row(const ReferenceScene& reference, int row, std::span<float> nearest);
-    void fill_holes(std::span<float> row) const;
+    static void fill_holes(std::span<float> row, std::span<std::uint8_t> trusted);
 
     int width_, height_;
     DisparityScale scale_;
     float threshold_steps_;
     std::optional<double> cut_steps_;
     std::vector<std::uint16_t> reach_;
+    std::vector<std::uint8_t> trusted_;
     std::vector<float> slack_, nearest_rows_, filled_;
 };
 

@@ -45,7 +45,11 @@ KINECTLAB_HOT_LOOP void follow_drift(Strip strip, float product, float sigma, fl
 }  // namespace
 
 ReferenceScene::ReferenceScene(const RgbdCamera& camera)
-    : width_(camera.depth.width), height_(camera.depth.height), scale_(camera) {
+    : width_(camera.depth.width),
+      height_(camera.depth.height),
+      scale_(camera),
+      sigma_(static_cast<float>(scale_.sigma_steps)),
+      rounding_(static_cast<float>(scale_.rounding_steps(1.0))) {
     const auto pixels = static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_);
     for (auto* field : {&disparity_, &variance_, &candidate_})
         field->assign(pixels, 0.0F);
@@ -65,13 +69,14 @@ void ReferenceScene::reset() {
 }
 
 float ReferenceScene::band(float s) const {
-    return kBandSigmas * static_cast<float>(scale_.sigma_steps + scale_.rounding_steps(s));
+    return kBandSigmas * (sigma_ + rounding_ * s * s);
 }
 
 void ReferenceScene::learn(std::span<const std::uint16_t> depth) {
+    const auto product = static_cast<float>(scale_.product);
     for (std::size_t i = 0; i < depth.size(); ++i) {
         if (depth[i] == 0) continue;
-        learn_pixel(i, static_cast<float>(scale_.steps(depth[i])));
+        learn_pixel(i, product / static_cast<float>(depth[i]));
     }
     ++learned_frames_;
 }
@@ -102,8 +107,8 @@ RowRange ReferenceScene::follow(std::span<const std::uint16_t> depth) {
     follow_drift(
         {depth.data() + first, disparity_.data() + first, unusual_.data(), size},
         static_cast<float>(scale_.product),
-        static_cast<float>(scale_.sigma_steps),
-        static_cast<float>(scale_.rounding_steps(1.0))
+        sigma_,
+        rounding_
     );
     for (std::size_t k = 0; k < size; ++k) {
         std::uint64_t eight = 1;

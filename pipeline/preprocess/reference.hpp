@@ -58,6 +58,7 @@ private:
 
     int width_, height_;
     DisparityScale scale_;
+    float sigma_, rounding_;  // of a reading at disparity s: sigma + rounding·s² at most
     std::size_t learned_frames_ = 0;
     int next_strip_ = 0;
     std::vector<float> disparity_, variance_, candidate_;

@@ -18,10 +18,12 @@ Segmenter::Segmenter(const ChangeSettings& settings, int min_points)
 }
 
 std::span<const PixelList> Segmenter::segment(
-    std::span<const std::uint16_t> depth, std::span<const ChangedRun> runs
+    std::span<const std::uint16_t> depth,
+    std::span<const std::uint8_t> trusted,
+    std::span<const ChangedRun> runs
 ) {
     connect(depth, runs);
-    measure(runs);
+    measure(trusted, runs);
     emit(runs);
     return segments_;
 }
@@ -69,7 +71,7 @@ std::int32_t Segmenter::root_of(std::int32_t run) {
     return run;
 }
 
-void Segmenter::measure(std::span<const ChangedRun> runs) {
+void Segmenter::measure(std::span<const std::uint8_t> trusted, std::span<const ChangedRun> runs) {
     components_.clear();
     component_of_.assign(runs.size(), -1);
     for (std::size_t i = 0; i < runs.size(); ++i) {
@@ -77,14 +79,16 @@ void Segmenter::measure(std::span<const ChangedRun> runs) {
         std::int32_t& component = component_of_[static_cast<std::size_t>(root)];
         if (component < 0) {
             component = static_cast<std::int32_t>(components_.size());
-            components_.push_back({root, 0, runs[i].row, runs[i].row});
+            components_.push_back({root, 0, 0, runs[i].row, runs[i].row});
         }
         Component& whole = components_[static_cast<std::size_t>(component)];
         whole.points += runs[i].end - runs[i].begin;
+        const auto first = trusted.begin() + runs[i].row * settings_.width;
+        whole.trusted += std::accumulate(first + runs[i].begin, first + runs[i].end, 0);
         whole.last_row = runs[i].row;
     }
     std::erase_if(components_, [this](const Component& c) {
-        return c.points < min_points_ || c.last_row - c.first_row + 1 < settings_.min_run;
+        return c.trusted < min_points_ || c.last_row - c.first_row + 1 < settings_.min_run;
     });
     std::sort(components_.begin(), components_.end(), [](const Component& a, const Component& b) {
         return a.points != b.points ? a.points > b.points : a.root < b.root;

@@ -123,7 +123,7 @@ Result<std::span<const TrackSample>> Chain::track(const RgbdFrame& frame) {
     s.limits_are_old = false;
 
     find_changed(frame.depth, s.limits.reach(), s.change, s.runs);
-    const auto segments = s.segmenter.segment(frame.depth, s.runs);
+    const auto segments = s.segmenter.segment(frame.depth, s.limits.trusted(), s.runs);
     s.samples.clear();
     for (const auto& tracker : s.trackers)
         tracker->track(frame, segments, s.samples);

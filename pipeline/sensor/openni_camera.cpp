@@ -7,7 +7,7 @@
 namespace kinectlab {
 namespace {
 
-constexpr double kPrimeSenseFocal = 570.342;   // px at a width of 640
+constexpr double kPrimeSenseFocal = 575.816;  // px at a width of 640, from a field of view of 58.1°
 constexpr double kPrimeSenseBaseline = 0.025;  // m from the depth camera to the colour camera
 
 Pinhole from_field_of_view(int width, int height, double fov_rad) {

@@ -39,7 +39,7 @@ Result<std::unique_ptr<FrameSource>> open_recording(
                                             : open_tum_sequence(path, options.with_colour);
     }
     if (path.extension() == ".pcd") return open_pcd_sequence(path);
-    if (path.extension() == ".oni") return open_oni(path);
+    if (path.extension() == ".oni") return open_oni(path, options.with_colour);
     return fail(
         ErrorCode::bad_data,
         path.string(),

@@ -9,41 +9,64 @@ namespace kinectlab::simulate {
 namespace {
 
 constexpr float kNoise = 1.7F;      ///< counts of 255
-constexpr float kContrast = 0.08F;  ///< between samples of a pixel; above it takes more of them
+constexpr float kContrast = 0.05F;  ///< between samples; above it a pixel takes more
 
-/// Samples on a grid of `side` x `side` in one pixel.
-struct PixelSamples {
-    Radiance mean = Radiance::Zero();
-    Radiance low = Radiance::Constant(1e9F);
-    Radiance high = Radiance::Zero();
+/// One camera on one room.
+struct View {
+    const Room& room;
+    const Pinhole& camera;
+    const Eigen::Isometry3d& T_lab_colour;
+
+    [[nodiscard]] Radiance sample(double u, double v) const {
+        const Eigen::Vector3d eye = T_lab_colour.translation();
+        const Eigen::Vector3d ray = T_lab_colour.linear() * camera.ray(u, v);
+        const Hit hit = room.cast(eye, ray);
+        if (hit.material == Material::none) return Radiance::Zero();
+        const double place_in_picture = 16.0 * (v * camera.width + u);
+        const auto grain = static_cast<std::uint64_t>(std::llround(place_in_picture));
+        return shade_room(room, hit, eye + hit.t * ray, eye, grain).cwiseMin(1.0F);
+    }
+
+    /// Mean of 4x4 samples.
+    [[nodiscard]] Radiance fine_pixel(int u, int v) const {
+        Radiance sum = Radiance::Zero();
+        for (int i = 0; i < 16; ++i)
+            sum += sample(u + (i % 4 - 1.5) / 4.0, v + (i / 4 - 1.5) / 4.0);
+        return sum / 16.0F;
+    }
 };
 
-PixelSamples sample_pixel(
-    const Room& room,
-    const Pinhole& camera,
-    const Eigen::Isometry3d& T_lab_colour,
-    int u,
-    int v,
-    int side
-) {
-    PixelSamples samples;
-    const Eigen::Vector3d& eye = T_lab_colour.translation();
-    for (int i = 0; i < side * side; ++i) {
-        const double du = (i % side + 0.5) / side - 0.5;
-        const double dv = (i / side + 0.5) / side - 0.5;
-        const Eigen::Vector3d ray = T_lab_colour.linear() * camera.ray(u + du, v + dv);
-        const Hit hit = room.cast(eye, ray);
-        Radiance colour = Radiance::Constant(0.02F);
-        if (hit.material != Material::none) {
-            const auto grain = static_cast<std::uint64_t>(((v * camera.width + u) * 64 + i) * 8);
-            colour = shade_room(room, hit, eye + hit.t * ray, eye, grain);
-        }
-        colour = colour.cwiseMin(1.0F);
-        samples.mean += colour / static_cast<float>(side * side);
-        samples.low = samples.low.cwiseMin(colour);
-        samples.high = samples.high.cwiseMax(colour);
+/// Two samples a pixel on its diagonal, which meet any line half a pixel wide; sixteen where these
+/// differ from each other or from a neighbour's.
+std::vector<Radiance> sample_room(const View& view) {
+    const auto width = static_cast<std::size_t>(view.camera.width);
+    const std::size_t pixels = width * static_cast<std::size_t>(view.camera.height);
+    const auto column = [width](std::size_t i) {
+        return static_cast<int>(i % width);
+    };
+    const auto row = [width](std::size_t i) {
+        return static_cast<int>(i / width);
+    };
+    std::vector<Radiance> mean(pixels);
+    std::vector<bool> fine(pixels);
+    const auto differ = [](const Radiance& a, const Radiance& b) {
+        return (a - b).cwiseAbs().maxCoeff() > kContrast;
+    };
+    for (std::size_t i = 0; i < pixels; ++i) {
+        const Radiance upper = view.sample(column(i) - 0.25, row(i) - 0.25);
+        const Radiance lower = view.sample(column(i) + 0.25, row(i) + 0.25);
+        mean[i] = 0.5F * (upper + lower);
+        fine[i] = differ(upper, lower);
     }
-    return samples;
+    for (std::size_t i = 0; i < pixels; ++i) {
+        for (const std::size_t next : {i + 1, i + width}) {
+            if (next >= pixels || (next == i + 1 && column(next) == 0)) continue;
+            if (differ(mean[i], mean[next])) fine[i] = fine[next] = true;
+        }
+    }
+    for (std::size_t i = 0; i < pixels; ++i)
+        if (fine[i]) mean[i] = view.fine_pixel(column(i), row(i));
+    return mean;
 }
 
 /// Bounds of a level square's picture, cut to the image; empty if it is not all in front.
@@ -79,15 +102,9 @@ ColourRenderer::ColourRenderer(
 )
     : camera_(camera), T_lab_colour_(T_lab_colour) {
     room_.reserve(static_cast<std::size_t>(camera.width) * camera.height * 3);
-    for (int v = 0; v < camera.height; ++v) {
-        for (int u = 0; u < camera.width; ++u) {
-            PixelSamples samples = sample_pixel(room, camera, T_lab_colour, u, v, 2);
-            if ((samples.high - samples.low).maxCoeff() > kContrast)
-                samples = sample_pixel(room, camera, T_lab_colour, u, v, 4);
-            for (const float channel : samples.mean)
-                room_.push_back(to_srgb(channel));
-        }
-    }
+    for (const Radiance& pixel : sample_room({room, camera, T_lab_colour}))
+        for (const float channel : pixel)
+            room_.push_back(to_srgb(channel));
     now_ = room_;
 }
 

@@ -55,16 +55,17 @@ Radiance wood(double along, double across, double plank_width) {
     return seam < 0.0012 ? Radiance(0.45F * colour) : colour;
 }
 
-/// A board of graph paper (10 cm squares, 50 cm bold) over a centimetre rule, in a wooden frame.
+/// A board of graph paper (10 cm squares, 50 cm bold) over a rule with marks at 2, 10 and 50 cm, in
+/// a wooden frame.
 Radiance board(double x, double z) {
     constexpr double kHalfWidth = 1.2;
     constexpr double kLow = 1.08;
     if (std::abs(x) > kHalfWidth || z < kLow) return wood(x, z, 0.5);
     if (z < kLow + 0.06) {
         const double height = z - kLow;
-        const bool tick = (line(x, 0.01, 0.0022) > 0 && height > 0.045) ||
-                          (line(x, 0.05, 0.003) > 0 && height > 0.032) ||
-                          (line(x, 0.10, 0.004) > 0 && height > 0.015);
+        const bool tick = (line(x, 0.02, 0.0034) > 0 && height > 0.045) ||
+                          (line(x, 0.10, 0.0040) > 0 && height > 0.032) ||
+                          (line(x, 0.50, 0.006) > 0 && height > 0.015);
         return tick ? Radiance(0.05F, 0.05F, 0.06F) : Radiance(0.86F, 0.73F, 0.36F);
     }
     const double fine = std::max(line(x, 0.1, 0.004), line(z - 0.9, 0.1, 0.004));

@@ -63,7 +63,7 @@ Room::Room(double pivot_height_m) {
         leg(-leg_x, leg_y),
         leg(leg_x, leg_y),
         Box{{-m, -m, pivot_height_m}, {m, m, pivot_height_m + 4.0}, Material::mount},
-        Box{{-2.3, 1.2, 0.0}, {-1.25, room::kWallY, 1.02}, Material::cabinet},
+        Box{{-2.3, 1.2, 0.0}, {-1.25, room::kWallY, room::kTallestFurniture}, Material::cabinet},
         Box{{1.55, 1.3, 0.0}, {2.4, room::kWallY, 0.8}, Material::cabinet},
     };
 }

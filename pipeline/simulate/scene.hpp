@@ -24,6 +24,7 @@ constexpr double kWallY = 1.6;
 constexpr double kTableTop = 0.74;
 constexpr double kTableHalfX = 0.95;
 constexpr double kTableHalfY = 0.40;
+constexpr double kTallestFurniture = 1.02;
 constexpr double kStringRadius = 0.001;
 }  // namespace room
 

@@ -10,7 +10,7 @@ namespace kinectlab::simulate {
 namespace {
 
 constexpr double kLampPower = 4.4;
-constexpr int kLampSamples = 2;
+constexpr int kLampSamples = 6;
 constexpr float kExposure = 1.12F;
 
 /// Schlick 1994.
@@ -20,6 +20,7 @@ double fresnel(double cosine, double head_on) {
 
 /// The share of the lamp that a point sees.
 double lamp_share(const Room& room, const Eigen::Vector3d& p, std::uint64_t grain) {
+    if (p.z() > room::kTallestFurniture) return 1.0;
     int seen = 0;
     for (int i = 0; i < kLampSamples; ++i) {
         const std::uint64_t draw = mix(grain + static_cast<std::uint64_t>(i));

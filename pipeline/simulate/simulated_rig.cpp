@@ -42,8 +42,11 @@ struct SimulatedRig::State {
           room(pivot_lab.z()),
           caster(room, camera.depth, T_lab_cam),
           noise(given.noise, camera.depth, caster.empty_room()) {
-        if (settings.with_colour)
-            colour.emplace(room, camera.colour, T_lab_cam * camera.T_colour_depth.inverse());
+        if (settings.with_colour) turn_on_colour();
+    }
+
+    void turn_on_colour() {
+        colour.emplace(room, camera.colour, T_lab_cam * camera.T_colour_depth.inverse());
     }
 
     RigSettings settings;
@@ -74,6 +77,10 @@ Result<void> SimulatedRig::apply(const Command& command) {
 
 void SimulatedRig::advance_to(double t_s) {
     state_->pendulum.advance_to(t_s);
+}
+
+void SimulatedRig::turn_on_colour() {
+    if (!state_->colour) state_->turn_on_colour();
 }
 
 void SimulatedRig::render(RgbdFrame& frame) {

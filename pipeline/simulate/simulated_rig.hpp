@@ -40,6 +40,9 @@ public:
     /// Seconds since the rig was switched on; times before the last one are ignored.
     void advance_to(double t_s);
 
+    /// Turns the colour camera on for good; costs the time of rendering the room once.
+    void turn_on_colour();
+
     /// What the Kinect sees now. Index = time x 30 Hz, t = t_colour = start + time; depth in mm.
     /// The frame's buffers are reused.
     void render(RgbdFrame& frame);

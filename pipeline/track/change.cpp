@@ -9,7 +9,7 @@ namespace {
 
 class ChangeTracker : public Tracker {
 public:
-    ChangeTracker(const RgbdCamera& camera, std::vector<IndexedSpec> objects)
+    ChangeTracker(const RgbdCamera& camera, TrackedObjects<ChangeTrackSettings> objects)
         : camera_(camera), scale_(camera), objects_(std::move(objects)) {}
 
     void track(
@@ -55,13 +55,13 @@ private:
 
     RgbdCamera camera_;
     DisparityScale scale_;
-    std::vector<IndexedSpec> objects_;
+    TrackedObjects<ChangeTrackSettings> objects_;
 };
 
 }  // namespace
 
 std::unique_ptr<Tracker> make_change_tracker(
-    const RgbdCamera& camera, std::vector<IndexedSpec> objects
+    const RgbdCamera& camera, TrackedObjects<ChangeTrackSettings> objects
 ) {
     return std::make_unique<ChangeTracker>(camera, std::move(objects));
 }

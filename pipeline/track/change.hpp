@@ -8,7 +8,12 @@ namespace kinectlab {
 /// centroid of its visible surface; none where nothing moved. The covariance is that of the
 /// centroid under the sensor's noise and an outline that is known to half a pixel.
 [[nodiscard]] std::unique_ptr<Tracker> make_change_tracker(
-    const RgbdCamera& camera, std::vector<IndexedSpec> objects
+    const RgbdCamera& camera, TrackedObjects<ChangeTrackSettings> objects
 );
+
+/// There is nothing to set, and so nothing to refuse.
+[[nodiscard]] inline Result<void> check(const ChangeTrackSettings&, const std::string&) {
+    return {};
+}
 
 }  // namespace kinectlab

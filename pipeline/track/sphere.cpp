@@ -1,6 +1,7 @@
 #include "pipeline/track/sphere.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <optional>
 
@@ -23,7 +24,7 @@ constexpr std::size_t kMostTries = 8;         // segments looked at for one obje
 
 class SphereTracker : public Tracker {
 public:
-    SphereTracker(const RgbdCamera& camera, std::vector<IndexedSpec> objects)
+    SphereTracker(const RgbdCamera& camera, TrackedObjects<SphereSettings> objects)
         : camera_(camera), scale_(camera), fitter_(camera) {
         for (auto& object : objects)
             targets_.push_back({std::move(object), {}, 0, false, {}});
@@ -60,7 +61,7 @@ public:
 
 private:
     struct Target {
-        IndexedSpec object;
+        TrackedObject<SphereSettings> object;
         Eigen::Vector3d place_cam = Eigen::Vector3d::Zero();
         TimeNs seen_at = 0;
         bool has_place = false;
@@ -76,7 +77,7 @@ private:
         target.sample.t = frame.t;
         target.sample.object = target.object.index;
         for (const auto& pixels : likely_segments(target, frame, moved)) {
-            const auto fit = detect(target.object.spec, frame, pixels);
+            const auto fit = detect(target.object.settings, frame, pixels);
             if (!fit) continue;
             claimed_.push_back(fit->sphere);
             target.place_cam = fit->sphere.centre_cam;
@@ -120,15 +121,15 @@ private:
     }
 
     std::optional<SphereFit> detect(
-        const ObjectSpec& spec, const RgbdFrame& frame, MovedPixels pixels
+        const SphereSettings& settings, const RgbdFrame& frame, MovedPixels pixels
     ) {
         const MovedPixels free = without_claimed(frame, pixels);
         const SurfaceSample sample(frame.depth, free, camera_.depth, scale_);
-        const auto candidate = sphere_candidate(sample.points(), spec, scale_);
+        const auto candidate = sphere_candidate(sample.points(), settings, scale_);
         if (!candidate || support(*candidate, sample.points(), scale_) < kMinSupport)
             return std::nullopt;
-        auto fit = fitter_.fit(frame.depth, *candidate, spec.radius_m.has_value());
-        return fit && is_sphere(*fit, spec) ? fit : std::nullopt;
+        auto fit = fitter_.fit(frame.depth, *candidate, settings.radius_m.has_value());
+        return fit && is_sphere(*fit, settings) ? fit : std::nullopt;
     }
 
     /// The pixels that no other object's sphere explains already.
@@ -145,12 +146,12 @@ private:
         return rest_;
     }
 
-    [[nodiscard]] bool is_sphere(const SphereFit& fit, const ObjectSpec& spec) const {
+    [[nodiscard]] bool is_sphere(const SphereFit& fit, const SphereSettings& settings) const {
         const double z = fit.sphere.centre_cam.z();
         const bool radius_fits =
-            spec.radius_m ||
-            (fit.sphere.radius >= spec.min_radius_m && fit.sphere.radius <= spec.max_radius_m &&
-             fit.radius_u <= kMaxRadiusShareU * fit.sphere.radius);
+            settings.radius_m || (fit.sphere.radius >= settings.min_radius_m &&
+                                  fit.sphere.radius <= settings.max_radius_m &&
+                                  fit.radius_u <= kMaxRadiusShareU * fit.sphere.radius);
         return radius_fits && fit.quality.inlier_share >= kMinInlierShare &&
                fit.visible_share >= kMinVisible && fit.alone_share >= kMinAlone &&
                fit.quality.rms_steps <= kMaxRmsSigmas * scale_.sigma_at(scale_.steps_at(z));
@@ -166,10 +167,34 @@ private:
     std::vector<std::uint32_t> rest_;
 };
 
+Result<void> check_radius(const std::string& field, double radius_m) {
+    if (std::isfinite(radius_m) && radius_m > 0.0 && radius_m <= 2.0) return {};
+    return fail(
+        ErrorCode::invalid_argument,
+        field,
+        "is " + std::to_string(radius_m),
+        "give a radius in metres above 0 and up to 2, e.g. 0.05"
+    );
+}
+
 }  // namespace
 
+Result<void> check(const SphereSettings& settings, const std::string& path) {
+    if (settings.radius_m) return check_radius(path + ".radius_m", *settings.radius_m);
+    if (auto ok = check_radius(path + ".min_radius_m", settings.min_radius_m); !ok) return ok;
+    if (auto ok = check_radius(path + ".max_radius_m", settings.max_radius_m); !ok) return ok;
+    if (settings.min_radius_m < settings.max_radius_m) return {};
+    return fail(
+        ErrorCode::invalid_argument,
+        path + ".min_radius_m",
+        "is " + std::to_string(settings.min_radius_m) + ", not below max_radius_m " +
+            std::to_string(settings.max_radius_m),
+        "give a range, or radius_m alone"
+    );
+}
+
 std::unique_ptr<Tracker> make_sphere_tracker(
-    const RgbdCamera& camera, std::vector<IndexedSpec> objects
+    const RgbdCamera& camera, TrackedObjects<SphereSettings> objects
 ) {
     return std::make_unique<SphereTracker>(camera, std::move(objects));
 }

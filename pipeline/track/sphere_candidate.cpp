@@ -29,14 +29,15 @@ private:
     std::uint32_t state_ = 2463534242U;
 };
 
-/// Half the window of the normals' fit: a quarter of the radius if all pixels were one disc.
+/// Half the window of the normals' fit: a quarter of the radius if all pixels were one disc, and
+/// no more than a candidate needs.
 int half_window_for(std::size_t pixels) {
     const double radius_px = std::sqrt(static_cast<double>(pixels) / std::numbers::pi);
-    return static_cast<int>(std::clamp(radius_px / 4.0, 1.5, 5.0));
+    return static_cast<int>(std::clamp(radius_px / 4.0, 1.5, 3.5));
 }
 
 std::optional<Sphere> through(
-    const OrientedPoint& a, const OrientedPoint& b, const ObjectSpec& spec
+    const OrientedPoint& a, const OrientedPoint& b, const SphereSettings& settings
 ) {
     // Closest points of the lines a + s·na and b + t·nb.
     const double cosine = a.normal.dot(b.normal);
@@ -49,16 +50,16 @@ std::optional<Sphere> through(
     if (s >= 0.0 || t >= 0.0) return std::nullopt;  // the centre is behind the surface
 
     Sphere sphere;
-    if (spec.radius_m) {
-        sphere.radius = *spec.radius_m;
+    if (settings.radius_m) {
+        sphere.radius = *settings.radius_m;
         sphere.centre_cam = 0.5 * (a.p_cam + b.p_cam) - 0.5 * sphere.radius * (a.normal + b.normal);
         return sphere;
     }
     sphere.centre_cam = 0.5 * (a.p_cam + s * a.normal + b.p_cam + t * b.normal);
     sphere.radius =
         0.5 * ((a.p_cam - sphere.centre_cam).norm() + (b.p_cam - sphere.centre_cam).norm());
-    const bool in_range =
-        sphere.radius >= 0.7 * spec.min_radius_m && sphere.radius <= 1.4 * spec.max_radius_m;
+    const bool in_range = sphere.radius >= 0.7 * settings.min_radius_m &&
+                          sphere.radius <= 1.4 * settings.max_radius_m;
     return in_range ? std::optional(sphere) : std::nullopt;
 }
 
@@ -100,7 +101,9 @@ double support(
 }
 
 std::optional<Sphere> sphere_candidate(
-    std::span<const OrientedPoint> points, const ObjectSpec& spec, const DisparityScale& scale
+    std::span<const OrientedPoint> points,
+    const SphereSettings& settings,
+    const DisparityScale& scale
 ) {
     if (points.size() < 8) return std::nullopt;
     Random random;
@@ -110,7 +113,7 @@ std::optional<Sphere> sphere_candidate(
     for (int i = 0; i < kMaxTries && i < tries_needed; ++i) {
         const auto& a = points[random.below(points.size())];
         const auto& b = points[random.below(points.size())];
-        const auto sphere = through(a, b, spec);
+        const auto sphere = through(a, b, settings);
         if (!sphere) continue;
         const double found = support(*sphere, points, scale);
         if (found <= best_support) continue;

@@ -25,7 +25,7 @@ public:
     );
     [[nodiscard]] std::span<const OrientedPoint> points() const { return {points_.data(), size_}; }
 
-    static constexpr std::size_t kPoints = 96;
+    static constexpr std::size_t kPoints = 64;
 
 private:
     std::array<OrientedPoint, kPoints> points_;
@@ -42,7 +42,9 @@ private:
 /// the midpoint of the shortest segment between the two normals' lines, the radius the mean
 /// distance (the paper's Table I). Nothing where no pair gives a radius in range. Deterministic.
 [[nodiscard]] std::optional<Sphere> sphere_candidate(
-    std::span<const OrientedPoint> points, const ObjectSpec& spec, const DisparityScale& scale
+    std::span<const OrientedPoint> points,
+    const SphereSettings& settings,
+    const DisparityScale& scale
 );
 
 }  // namespace kinectlab

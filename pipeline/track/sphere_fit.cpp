@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numeric>
 
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
@@ -13,17 +12,22 @@
 namespace kinectlab {
 namespace {
 
-constexpr int kMostPixels = 16384;  // more would not be felt in the result: a grid of every 2nd, …
-constexpr double kMargin = 1.3;     // of the radius: the window shows what surrounds the sphere
-constexpr double kRing = 1.1;       // of the radius: what lies beyond is not the sphere
-constexpr double kMinCosine = 0.25;  // rays that graze more see flying pixels and the background
-constexpr int kMaxIterations = 10;
-constexpr double kSettled_m = 2e-6;  // a smaller step changes nothing that the noise would show
+constexpr int kMostPixels = 16384;      // more would not be felt in the result: every 2nd, 3rd, …
+constexpr double kMargin = 1.3;         // of the radius: the window shows what surrounds the sphere
+constexpr double kRing = 1.1;           // of the radius: what lies beyond is not the sphere
+constexpr double kRimAtFirst = 0.5;     // px inside the outline: what is farther out is left out
+constexpr double kRimSigmas = 3.0;      // of the centre across the rays, once it is known
+constexpr double kMinCosine = 0.25;     // of the incidence of rays that tell whether it is a sphere
+constexpr float kLeastCosine2 = 4e-4F;  // keeps the slopes of grazing rays finite
+constexpr int kMaxIterations = 12;
+constexpr double kSettled_m = 5e-6;  // a smaller step changes nothing that the noise would show
 constexpr double kStillMoving_m = 1e-3;
 constexpr double kFirstGateSigmas = 40.0, kLastGateSigmas = 6.0;
 constexpr double kLongestStep = 0.3;  // of the radius
 constexpr int kFewestPixels = 24;
-constexpr int kBlock = 10;  // px: a Kinect correlates over 9
+constexpr int kBlock = 10;        // px: a Kinect correlates over 9
+constexpr double kFading = 0.97;  // of what earlier pictures told about the noise
+constexpr double kMostLateralPx = 2.0;
 
 constexpr std::size_t kLanes = 8;  // sums run side by side, for the vector units
 
@@ -31,40 +35,52 @@ constexpr std::size_t kLanes = 8;  // sums run side by side, for the vector unit
 struct Pixels {
     std::size_t size;
     const float *x, *y, *s;
-    float *used, *weight, *residual;
+    float *used, *weight, *residual, *steep;
     std::array<float*, 4> slope;
 };
 
 /// A linearisation point in single precision.
 struct Point {
     float cx, cy, cz, radius;
-    float power;  ///< c·c - r²
+    float power;   ///< c·c - r²
+    float chosen;  ///< radius of what is surely sphere: the rim left out
     float per_step, gate;
+    float lateral;  ///< (σ_lateral / (σ f))², px² / steps²
 };
+
+Point point_at(const Sphere& sphere, double rim_m) {
+    const Eigen::Vector3f c = sphere.centre_cam.cast<float>();
+    const double power = sphere.centre_cam.squaredNorm() - sphere.radius * sphere.radius;
+    const double chosen = std::max(0.5 * sphere.radius, sphere.radius - rim_m);
+    Point at{};
+    at.cx = c.x(), at.cy = c.y(), at.cz = c.z();
+    at.radius = static_cast<float>(sphere.radius);
+    at.power = static_cast<float>(power);
+    at.chosen = static_cast<float>(chosen);
+    return at;
+}
 
 /// The square of meet()'s root from the cross product, r² d·d - |d x c|², which loses no digits in
 /// single precision.
-inline float root2_of(float x, float y, float d2, const Point& at) {
+inline float root2_of(float x, float y, float d2, float radius, const Point& at) {
     const float across_x = y * at.cz - at.cy;
     const float across_y = at.cx - x * at.cz;
     const float across_z = x * at.cy - y * at.cx;
     const float across2 = across_x * across_x + across_y * across_y + across_z * across_z;
-    return at.radius * at.radius * d2 - across2;
+    return radius * radius * d2 - across2;
 }
 
-/// Which pixels the fit rests on: those with a reading whose rays do not graze.
+/// Which pixels the fit rests on: those with a reading whose rays pass well within the outline.
 KINECTLAB_HOT_LOOP void choose(const Pixels& pixels, const Point& point) {
     const Point at = point;
     const float *xs = pixels.x, *ys = pixels.y, *ss = pixels.s;
     float* used = pixels.used;
-    constexpr auto kLeast2 = static_cast<float>(kMinCosine * kMinCosine);
-    const float r2 = at.radius * at.radius;
 #pragma GCC ivdep  // the arrays are all different ones
     for (std::size_t i = 0; i < pixels.size; ++i) {
         const float x = xs[i], y = ys[i];
         const float d2 = x * x + y * y + 1.0F;
         const float read = std::min(ss[i], 1.0F);  // nothing is as far as one step, 350 m
-        used[i] = root2_of(x, y, d2, at) >= kLeast2 * r2 * d2 ? read : 0.0F;
+        used[i] = root2_of(x, y, d2, at.chosen, at) > 0.0F ? read : 0.0F;
     }
 }
 
@@ -82,22 +98,29 @@ KINECTLAB_HOT_LOOP void linearise(const Pixels& pixels, const Point& point) {
     float* by_z = pixels.slope[2];
     float* by_r = pixels.slope[3];
     const float* used = pixels.used;
-    constexpr auto kLeast2 = static_cast<float>(0.25 * kMinCosine * kMinCosine);
+    float* steep = pixels.steep;
     const float r2 = at.radius * at.radius;
 #pragma GCC ivdep  // the arrays are all different ones
     for (std::size_t i = 0; i < pixels.size; ++i) {
         const float x = xs[i], y = ys[i];
         const float d2 = x * x + y * y + 1.0F;
-        const float root = std::sqrt(std::max(root2_of(x, y, d2, at), kLeast2 * r2 * d2));
+        const float root2 = root2_of(x, y, d2, at.radius, at);
+        const float root = std::sqrt(std::max(root2, kLeastCosine2 * r2 * d2));
         const float w = (x * at.cx + y * at.cy + at.cz + root) / at.power;
+        const float aside_x = x - w * at.cx, aside_y = y - w * at.cy;
+        const float steepness = at.per_step / root;
+        // A pixel that looks aside by σ_lateral errs the more, the steeper the surface.
+        const float slope2 = steepness * steepness * (aside_x * aside_x + aside_y * aside_y);
+        const float variance = 1.0F + at.lateral * slope2;
         const float residual = ss[i] - w * at.per_step;
-        const float off = residual / at.gate;
-        const float tukey = std::max(0.0F, 1.0F - off * off);
-        weights[i] = used[i] * tukey * tukey;
+        const float off2 = residual * residual / (at.gate * at.gate * variance);
+        const float tukey = std::max(0.0F, 1.0F - off2);
+        weights[i] = used[i] * tukey * tukey / variance;
         residuals[i] = residual;
-        const float scale = w * at.per_step / root;
-        by_x[i] = scale * (x - w * at.cx);
-        by_y[i] = scale * (y - w * at.cy);
+        steep[i] = slope2;
+        const float scale = w * steepness;
+        by_x[i] = scale * aside_x;
+        by_y[i] = scale * aside_y;
         by_z[i] = scale * (1.0F - w * at.cz);
         by_r[i] = scale * w * at.radius;
     }
@@ -126,13 +149,13 @@ KINECTLAB_HOT_LOOP double weighted_sum(
 struct SphereFitter::Equations {
     Eigen::Matrix4d information = Eigen::Matrix4d::Identity();
     Eigen::Vector4d gradient = Eigen::Vector4d::Zero();
-    double weights = 0.0;
+    double pixels = 0.0;   // those that count, in parts where their residuals are large
     double squares = 0.0;  // of weighted residuals, steps²
 };
 
 SphereFitter::SphereFitter(const RgbdCamera& camera) : camera_(camera.depth), scale_(camera) {
     const auto room = static_cast<std::size_t>(2 * kMostPixels);
-    for (auto* field : {&x_, &y_, &s_, &used_, &weight_, &residual_})
+    for (auto* field : {&x_, &y_, &s_, &used_, &weight_, &residual_, &steep_})
         field->reserve(room);
     for (auto& field : slope_)
         field.reserve(room);
@@ -167,15 +190,13 @@ void SphereFitter::gather(std::span<const std::uint16_t> depth, const Sphere& sp
         }
     }
     const std::size_t padded = (s_.size() + kLanes - 1) / kLanes * kLanes;
-    for (auto* field : {&x_, &y_, &s_, &used_, &weight_, &residual_})
+    for (auto* field : {&x_, &y_, &s_, &used_, &weight_, &residual_, &steep_})
         field->resize(padded, 0.0F);
     for (auto& field : slope_)
         field.resize(padded, 0.0F);
 }
 
 SphereFitter::Equations SphereFitter::equations(const Sphere& sphere, const Step& step) {
-    const Eigen::Vector3f c = sphere.centre_cam.cast<float>();
-    const double power = sphere.centre_cam.squaredNorm() - sphere.radius * sphere.radius;
     const Pixels pixels{
         s_.size(),
         x_.data(),
@@ -184,15 +205,12 @@ SphereFitter::Equations SphereFitter::equations(const Sphere& sphere, const Step
         used_.data(),
         weight_.data(),
         residual_.data(),
+        steep_.data(),
         {slope_[0].data(), slope_[1].data(), slope_[2].data(), slope_[3].data()}};
-    const Point at{
-        c.x(),
-        c.y(),
-        c.z(),
-        static_cast<float>(sphere.radius),
-        static_cast<float>(power),
-        static_cast<float>(1.0 / scale_.inverse_depth_step),
-        static_cast<float>(step.gate_steps)};
+    Point at = point_at(sphere, step.rim_m);
+    at.per_step = static_cast<float>(1.0 / scale_.inverse_depth_step);
+    at.gate = static_cast<float>(step.gate_steps);
+    at.lateral = static_cast<float>(lateral());
     if (step.choose_pixels) choose(pixels, at);
     linearise(pixels, at);
     const auto sum = [this](const std::vector<float>& a, const std::vector<float>& b) {
@@ -209,21 +227,25 @@ SphereFitter::Equations SphereFitter::equations(const Sphere& sphere, const Step
             sums.information(row, column) = sums.information(column, row) = value;
         }
     }
-    sums.weights = std::accumulate(weight_.begin(), weight_.end(), 0.0);
+    // used is 1 wherever a weight is not 0.
+    sums.pixels = sum(used_, used_) + lateral() * sum(used_, steep_);
     sums.squares = sum(residual_, residual_);
     return sums;
 }
 
-/// Gauss-Newton steps. The gate closes on the noise as the guess's own error leaves the residuals;
-/// from then on the pixels stay the same.
+/// Gauss-Newton steps. The gate closes on the noise as the guess's own error leaves the residuals.
+/// Then the pixels are chosen once more, those that surely show the sphere as well as its centre is
+/// known, and stay: pixels at the rim that come and go would keep the fit from settling.
 bool SphereFitter::settle(Sphere& sphere, Equations& sums, double sigma, bool fixed) {
     const double first_radius = sphere.radius;
     const double last_gate = kLastGateSigmas * sigma;
-    Step way{kFirstGateSigmas * sigma, true, fixed};
+    Step way{
+        kFirstGateSigmas * sigma, kRimAtFirst * sphere.centre_cam.z() / camera_.fx, true, fixed};
+    bool last_choice = false;
     double step_m = 0.0;
     for (int i = 0; i < kMaxIterations; ++i) {
         sums = equations(sphere, way);
-        if (sums.weights < kFewestPixels) return false;
+        if (sums.pixels < kFewestPixels) return false;
         const auto solver = sums.information.ldlt();
         if (solver.info() != Eigen::Success || !solver.isPositive()) return false;
         Eigen::Vector4d step = solver.solve(sums.gradient);
@@ -234,9 +256,13 @@ bool SphereFitter::settle(Sphere& sphere, Equations& sums, double sigma, bool fi
         sphere.radius += step[3];
         if (sphere.radius <= 0.0 || sphere.centre_cam.z() <= sphere.radius) return false;
         if (!way.choose_pixels && step_m < kSettled_m) break;
-        // Pixels at the rim that come and go would keep the fit from settling.
-        way.choose_pixels = way.gate_steps > last_gate;
-        way.gate_steps = std::max(last_gate, 0.4 * way.gate_steps);
+        way.choose_pixels = way.choose_pixels && !last_choice;
+        if (way.choose_pixels && way.gate_steps == last_gate) {
+            last_choice = true;
+            const Eigen::Matrix4d covariance = sigma * sigma * sums.information.inverse();
+            way.rim_m = kRimSigmas * std::sqrt(covariance.topLeftCorner<2, 2>().trace() / 2.0);
+        }
+        way.gate_steps = std::max(last_gate, 0.25 * way.gate_steps);
     }
     return step_m < kStillMoving_m;
 }
@@ -252,14 +278,35 @@ std::optional<SphereFit> SphereFitter::fit(
     Equations sums;
     if (!settle(fit.sphere, sums, sigma, fixed_radius)) return std::nullopt;
 
-    const double free = std::max(1.0, sums.weights - (fixed_radius ? 3.0 : 4.0));
+    const double free = std::max(1.0, sums.pixels - (fixed_radius ? 3.0 : 4.0));
     const double reduced_chi2 = sums.squares / (sigma * sigma) / free;
     const double variance = sigma * sigma * std::max(1.0, reduced_chi2) * correlation_inflation();
     const Eigen::Matrix4d inverse = sums.information.inverse();
     fit.covariance = variance * inverse.topLeftCorner<3, 3>();
     fit.radius_u = fixed_radius ? 0.0 : std::sqrt(variance * inverse(3, 3));
     assess(fit, sigma);
+    learn_lateral_noise(sigma);
     return fit;
+}
+
+double SphereFitter::lateral() const {
+    if (lateral_.leverage == 0.0) return 0.0;
+    const double most = std::pow(kMostLateralPx / (scale_.sigma_steps * camera_.fx), 2);
+    return std::clamp(lateral_.excess / lateral_.leverage, 0.0, most);
+}
+
+/// Pixels of a real sensor look aside a little (Nguyen, Izadi & Lovell 2012), which shows where the
+/// surface is steep: least squares of the residuals' squares, less the sensor's noise, over slope².
+void SphereFitter::learn_lateral_noise(double sigma) {
+    const double now = lateral();
+    lateral_.excess *= kFading;
+    lateral_.leverage *= kFading;
+    for (std::size_t i = 0; i < weight_.size(); ++i) {
+        const double weight = weight_[i] / (1.0 + now * steep_[i]);
+        const double square = residual_[i] * residual_[i] / (sigma * sigma);
+        lateral_.excess += weight * steep_[i] * (square - 1.0);
+        lateral_.leverage += weight * steep_[i] * steep_[i];
+    }
 }
 
 /// Pixels share a correlation window in a real sensor, so their errors are less than independent.
@@ -267,7 +314,6 @@ std::optional<SphereFit> SphereFitter::fit(
 /// independent errors would let them as the fitted centre does. A single picture has few blocks, so
 /// the sums of earlier ones fade slowly.
 double SphereFitter::correlation_inflation() {
-    constexpr double kFading = 0.97;
     correlation_.of_blocks *= kFading;
     correlation_.of_pixels *= kFading;
     for (int top = 0; top < rows_; top += kBlock) {
@@ -290,27 +336,32 @@ double SphereFitter::correlation_inflation() {
 }
 
 /// How much of the sphere the picture shows, and whether the surface ends where the sphere does.
+/// Follows equations() of the same sphere, whose residuals it reads.
 void SphereFitter::assess(SphereFit& fit, double sigma) const {
     const Sphere& sphere = fit.sphere;
-    const double r2 = sphere.radius * sphere.radius;
+    const Point at = point_at(sphere, 0.0);
+    const double r = sphere.radius, z = sphere.centre_cam.z();
+    const auto inside = static_cast<float>(std::sqrt(1.0 - kMinCosine * kMinCosine) * r);
+    const auto ring = static_cast<float>(kRing * r), margin = static_cast<float>(kMargin * r);
+    // Disparities of what may surround the sphere and is neither behind nor far before it.
+    const auto behind = static_cast<float>(scale_.steps_at(z + 0.5 * r));
+    const auto before = static_cast<float>(scale_.steps_at(std::max(0.1 * z, z - 2.0 * r)));
+    const auto gate = static_cast<float>(kLastGateSigmas * sigma);
     int covered = 0, read = 0, inliers = 0, around = 0, alone = 0;
     double squares = 0.0;
     for (std::size_t i = 0; i < static_cast<std::size_t>(rows_ * columns_); ++i) {
-        const Eigen::Vector3d ray(x_[i], y_[i], 1.0);
-        const double miss2 = ray.cross(sphere.centre_cam).squaredNorm() / ray.squaredNorm();
-        if (miss2 < (1.0 - kMinCosine * kMinCosine) * r2) {
+        const float x = x_[i], y = y_[i], s = s_[i];
+        const float d2 = x * x + y * y + 1.0F;
+        if (root2_of(x, y, d2, inside, at) > 0.0F) {
             ++covered;
-            if (s_[i] == 0.0F) continue;
+            if (s == 0.0F) continue;
             ++read;
-            const double e = s_[i] - scale_.steps_at(1.0 / meet(ray, sphere).w);
-            if (std::abs(e) > kLastGateSigmas * sigma) continue;
+            if (std::abs(residual_[i]) > gate) continue;
             ++inliers;
-            squares += e * e;
-        } else if (miss2 > kRing * kRing * r2 && miss2 < kMargin * kMargin * r2) {
+            squares += residual_[i] * residual_[i];
+        } else if (root2_of(x, y, d2, ring, at) < 0.0F && root2_of(x, y, d2, margin, at) > 0.0F) {
             ++around;
-            const double z = s_[i] == 0.0F ? 0.0 : scale_.metres(s_[i]);
-            const double behind = z - sphere.centre_cam.z();
-            if (z == 0.0 || behind > 0.5 * sphere.radius || behind < -2.0 * sphere.radius) ++alone;
+            if (s < behind || s > before) ++alone;
         }
     }
     fit.quality.points = inliers * stride_ * stride_;

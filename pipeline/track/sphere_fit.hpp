@@ -43,6 +43,7 @@ private:
     struct Equations;
     struct Step {
         double gate_steps;   // residuals beyond do not count
+        double rim_m;        // from the outline inwards, not used
         bool choose_pixels;  // anew, for the sphere as it is now
         bool fixed_radius;
     };
@@ -51,20 +52,28 @@ private:
     [[nodiscard]] bool settle(Sphere& sphere, Equations& sums, double sigma, bool fixed);
     void assess(SphereFit& fit, double sigma) const;
     [[nodiscard]] double correlation_inflation();
+    [[nodiscard]] double lateral() const;
+    void learn_lateral_noise(double sigma);
 
     struct Correlation {
         double of_blocks = 0.0;  // squares of the residuals' sums over blocks
         double of_pixels = 0.0;  // sums of the residuals' squares
     };
 
+    struct LateralNoise {
+        double excess = 0.0;    // of the residuals' variance, by slope²
+        double leverage = 0.0;  // slope⁴
+    };
+
     Pinhole camera_;
     DisparityScale scale_;
+    LateralNoise lateral_;
     Correlation correlation_;
     int stride_ = 1;
     int columns_ = 0, rows_ = 0;    // of the gathered window
     std::vector<float> x_, y_, s_;  // ray and disparity of each pixel; s = 0 without a reading
-    std::vector<float> used_, weight_, residual_;  // at the last linearisation
-    std::array<std::vector<float>, 4> slope_;      // of the disparity by centre and radius
+    std::vector<float> used_, weight_, residual_, steep_;  // at the last linearisation
+    std::array<std::vector<float>, 4> slope_;              // of the disparity by centre and radius
 };
 
 }  // namespace kinectlab

@@ -37,20 +37,21 @@ public:
     virtual void reset() = 0;
 };
 
-/// An object and its place in the list that a person gave.
-struct IndexedSpec {
+/// An object of one method and its place in the list that a person gave.
+template <class Settings>
+struct TrackedObject {
     std::uint32_t index = 0;
-    ObjectSpec spec;
+    std::string name;
+    Settings settings;
 };
 
-/// The trackers for a list of objects, one for each method in use. Errors name the object: none
-/// given, a name twice or empty, an unknown method (with the nearest that exists), a radius that is
-/// not positive, min_radius_m not below max_radius_m.
+template <class Settings>
+using TrackedObjects = std::vector<TrackedObject<Settings>>;
+
+/// The trackers for a list of objects, one for each method in use. Errors name the object and the
+/// setting: none given, a name twice or empty, a setting that its method refuses.
 [[nodiscard]] Result<std::vector<std::unique_ptr<Tracker>>> make_trackers(
     const RgbdCamera& camera, std::span<const ObjectSpec> objects
 );
-
-/// The names of all methods, for messages and help.
-[[nodiscard]] std::vector<std::string> tracking_methods();
 
 }  // namespace kinectlab

@@ -48,11 +48,11 @@ json count_states(const Trajectory& trajectory) {
     return object;
 }
 
-// How many things had moved in each frame, for objects of the method "change".
+// How many things had moved in each frame, for methods that report any number of them.
 json count_moved(const TrackedRecording& recording) {
     std::map<TimeNs, std::size_t> moved;
     for (std::size_t i = 0; i < recording.objects.size(); ++i) {
-        if (recording.objects[i].method != "change") continue;
+        if (!finds_many(recording.objects[i])) continue;
         for (const auto& sample : recording.samples[i])
             moved[sample.t] += sample.status == TrackStatus::tracked ? 1 : 0;
     }
@@ -89,10 +89,7 @@ json summary_of(
          {{"program", "kinectlab"},
           {"version", config::version()},
           {"camera", experiments::to_json(recording.source.camera)}}}};
-    const auto is_change = [](const ObjectSpec& object) {
-        return object.method == "change";
-    };
-    if (std::any_of(recording.objects.begin(), recording.objects.end(), is_change))
+    if (std::any_of(recording.objects.begin(), recording.objects.end(), finds_many))
         summary["moved_per_frame"] = count_moved(recording);
     return summary;
 }

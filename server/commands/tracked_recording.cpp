@@ -120,6 +120,7 @@ Result<TrackedRecording> track_recording(
     if (auto learned = learn(**source, *chain); !learned) return forward(learned);
     recording.learned_frames = chain->learned_frames();
 
+    source->reset();  // an .oni file has one player, which must start anew
     auto again = open_recording(path, depth_alone);
     if (!again) return forward(again);
     if (auto tracked = track_all(**again, *chain, recording); !tracked) return forward(tracked);
@@ -141,7 +142,7 @@ std::vector<Trajectory> trajectories_of(const TrackedRecording& recording) {
     for (std::size_t i = 0; i < recording.objects.size(); ++i) {
         const auto& object = recording.objects[i];
         const auto& samples = recording.samples[i];
-        if (object.method == "change") {
+        if (finds_many(object)) {
             for (auto& trajectory : ranked(object.name, samples, T_lab_cam))
                 trajectories.push_back(std::move(trajectory));
         } else {

@@ -68,14 +68,4 @@ Result<Values> validate(const Definition& definition, const Values& given, RigKi
     return values;
 }
 
-std::vector<ObjectSpec> objects_for(const Definition& definition, const Values& values) {
-    std::vector<ObjectSpec> specs;
-    for (const auto& object : definition.objects) {
-        specs.push_back(object.spec);
-        if (!object.radius_parameter.empty())
-            specs.back().radius_m = values.at(object.radius_parameter);
-    }
-    return specs;
-}
-
 }  // namespace kinectlab::experiments

@@ -24,10 +24,10 @@ struct Parameter {
     bool simulation_only = false;  ///< only a simulated rig can change it
 };
 
-/// An object of the experiment; a size that is a parameter is taken from the run's values.
+/// An object of the experiment as in its definition: the JSON of one element of a list of objects,
+/// in which {"parameter": NAME} stands for the run's value of that parameter.
 struct ExperimentObject {
-    ObjectSpec spec;
-    std::string radius_parameter;  ///< empty: spec.radius_m stands as it is
+    std::string json;
 };
 
 /// What an experiment is, from NAME.json in this folder.

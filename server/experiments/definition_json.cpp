@@ -35,46 +35,40 @@ Result<Parameter> read_parameter(const json& element, const std::string& path) {
     return parameter;
 }
 
-// "radius_m": {"parameter": "bob_radius_m"} takes the size from the run's values.
-Result<ExperimentObject> read_experiment_object(
-    json element, const std::string& path, const std::vector<Parameter>& parameters
-) {
-    ExperimentObject object;
-    if (element.is_object() && element.contains("radius_m") && element["radius_m"].is_object()) {
-        ObjectReader reader(element["radius_m"], path + ".radius_m", {"parameter"});
-        object.radius_parameter = reader.text("parameter");
+/// The element with every {"parameter": NAME} replaced by that parameter's value.
+Result<json> with_values(json element, const std::string& path, const Values& values) {
+    for (auto& [key, setting] : element.items()) {
+        if (!setting.is_object() || !setting.contains("parameter")) continue;
+        ObjectReader reader(setting, path + "." + key, {"parameter"});
+        const auto name = reader.text("parameter");
+        const auto value = values.find(name);
+        if (reader.ok() && value == values.end())
+            reader.refuse("parameter", "is \"" + name + "\"", "name one of the parameters");
         if (!reader.ok()) return reader.error();
-        const auto named = [&](const auto& p) {
-            return p.name == object.radius_parameter;
-        };
-        const auto parameter = std::find_if(parameters.begin(), parameters.end(), named);
-        if (parameter == parameters.end()) {
-            return fail(
-                ErrorCode::invalid_argument,
-                path + ".radius_m.parameter",
-                "is \"" + object.radius_parameter + "\"",
-                "name one of the parameters"
-            );
-        }
-        element["radius_m"] = parameter->default_value;
-    }
-    auto spec = read_object(element, path);
-    if (!spec) return tl::unexpected<Error>(spec.error());
-    object.spec = std::move(*spec);
-    return object;
-}
-
-json object_to_json(const ExperimentObject& object) {
-    json element = {{"name", object.spec.name}, {"method", object.spec.method}};
-    if (!object.radius_parameter.empty()) {
-        element["radius_m"] = {{"parameter", object.radius_parameter}};
-    } else if (object.spec.radius_m) {
-        element["radius_m"] = *object.spec.radius_m;
-    } else if (object.spec.method == "sphere") {
-        element["min_radius_m"] = object.spec.min_radius_m;
-        element["max_radius_m"] = object.spec.max_radius_m;
+        setting = value->second;
     }
     return element;
+}
+
+Result<ObjectSpec> resolve(const json& element, const std::string& path, const Values& values) {
+    if (!element.is_object()) return read_object(element, path);
+    return with_values(element, path, values).and_then([&](const json& resolved) {
+        return read_object(resolved, path);
+    });
+}
+
+/// Right for every value that a parameter can take if it is for the least and the greatest.
+Result<ExperimentObject> read_experiment_object(
+    const json& element, const std::string& path, const std::vector<Parameter>& parameters
+) {
+    for (const auto end : {&Parameter::default_value, &Parameter::min, &Parameter::max}) {
+        Values values;
+        for (const auto& parameter : parameters)
+            values[parameter.name] = parameter.*end;
+        if (auto spec = resolve(element, path, values); !spec)
+            return tl::unexpected<Error>(spec.error());
+    }
+    return ExperimentObject{element.dump()};
 }
 
 Result<Definition> load_file(const std::filesystem::path& file) {
@@ -127,13 +121,24 @@ json to_json(const Definition& definition) {
     }
     json objects = json::array();
     for (const auto& object : definition.objects)
-        objects.push_back(object_to_json(object));
+        objects.push_back(json::parse(object.json));
     return {
         {"id", definition.id},
         {"title", definition.title},
         {"summary", definition.summary},
         {"parameters", std::move(parameters)},
         {"objects", std::move(objects)}};
+}
+
+std::vector<ObjectSpec> objects_for(const Definition& definition, const Values& values) {
+    std::vector<ObjectSpec> specs;
+    for (std::size_t i = 0; i < definition.objects.size(); ++i) {
+        auto spec = resolve(
+            json::parse(definition.objects[i].json), "objects[" + std::to_string(i) + "]", values
+        );
+        specs.push_back(std::move(spec.value()));
+    }
+    return specs;
 }
 
 Result<std::vector<Definition>> load_definitions(const std::filesystem::path& folder) {

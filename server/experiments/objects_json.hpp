@@ -12,8 +12,8 @@
 namespace kinectlab::experiments {
 
 /// The objects to track, from {"objects": [{"name", "method", …settings of the method…}]}:
-///   sphere: radius_m (known; free if absent), min_radius_m, max_radius_m (where it is free)
-///   change: no settings; whatever moved
+/// the methods are those of kTrackingMethods, their settings those of object_spec.hpp by the same
+/// names.
 /// Errors name the JSON path, unknown keys and methods with the nearest valid one.
 [[nodiscard]] Result<std::vector<ObjectSpec>> read_objects(const nlohmann::json& document);
 

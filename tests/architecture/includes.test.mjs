@@ -19,7 +19,8 @@ const rank = {
   'pipeline/motion': 1, 'pipeline/analysis': 1,
   'pipeline/track': 2, 'pipeline/drivers': 2,
   'pipeline/run': 3,
-  'server/config': 4, 'server/lab': 4, 'server/experiments': 4, 'server/net': 4,
+  'server/lab': 4, 'server/experiments': 4, 'server/net': 4,
+  'server/config': 5,
   'server/store': 5, 'server/bus': 5,
   'server/archive': 6, 'server/auth': 6, 'server/live': 6,
   'server/rig': 7, 'server/api': 8, 'server/commands': 9, 'server': 10,
@@ -102,6 +103,8 @@ test('heavy headers stay in .cpp files', () => {
   const wrong = [];
   for (const file of tracked.filter((one) => /\.(hpp|h)$/.test(one))) {
     for (const { name } of includes(file)) {
+      // A plug-in's classes derive from OpenNI2's; nobody outside its folder sees them.
+      if (file.startsWith('pipeline/drivers/') && /^Driver\/Oni/.test(name)) continue;
       if (heavy.some((pattern) => pattern.test(name))) wrong.push(`${file} includes ${name}`);
     }
   }

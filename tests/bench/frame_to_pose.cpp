@@ -16,15 +16,11 @@ struct Timing {
 };
 
 /// Time and error of `find` (frame → centre, if any) over frames, again and again.
-/// `prepare` is called before each frame and not timed.
-template <class Find, class Prepare = void (*)()>
-Timing time_over(
-    const SwingFrames& frames, std::size_t count, int rounds, Find find, Prepare prepare = [] {}
-) {
+template <class Find>
+Timing time_over(const SwingFrames& frames, std::size_t count, int rounds, Find find) {
     double squares = 0.0, found = 0.0, seconds = 0.0, all = 0.0;
     for (int round = 0; round < rounds; ++round) {
         for (std::size_t i = 0; i < frames.swing.size(); i += frames.swing.size() / count) {
-            prepare();
             const double start = thread_seconds();
             const std::optional<Eigen::Vector3d> centre = find(frames.swing[i]);
             seconds += thread_seconds() - start;
@@ -69,13 +65,7 @@ double time_copy_ms(const SwingFrames& frames) {
 
 Timing time_stock(const SwingFrames& frames) {
     StockChain stock({frames.camera, 3.0, frames.radius_m}, frames.before.back());
-    return time_over(
-        frames,
-        12,
-        1,
-        [&](const RgbdFrame& frame) { return stock.track(frame); },
-        [&] { stock.prepare(); }
-    );
+    return time_over(frames, 12, 1, [&](const RgbdFrame& frame) { return stock.track(frame); });
 }
 
 }  // namespace

@@ -14,6 +14,10 @@ Figures measure_normals();
 Figures measure_octree_change();
 Figures measure_organised_change();
 Figures measure_depth_cut();
+Figures measure_gravity_from_positions();
+Figures measure_gravity_khoshelham();
+Figures measure_gravity_kinect();
+Figures measure_live_latency();
 
 /// Everything that can be measured. To add something: declare it above and name it here with the
 /// figures it yields, so that --filter can pass over what is not wanted.
@@ -31,6 +35,10 @@ inline constexpr std::array kMeasurements{
     Measurement{"octree change", measure_octree_change},
     Measurement{"change in the image grid", measure_organised_change},
     Measurement{"depth cut", measure_depth_cut},
+    Measurement{"g, white positions, analysis of 900 positions", measure_gravity_from_positions},
+    Measurement{"g, khoshelham noise", measure_gravity_khoshelham},
+    Measurement{"g, kinect noise", measure_gravity_kinect},
+    Measurement{"live: capture to pose at a WebSocket client, frames lost", measure_live_latency},
 };
 
 }  // namespace kinectlab::bench

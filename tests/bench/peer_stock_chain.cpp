@@ -77,11 +77,8 @@ StockChain::StockChain(const Settings& settings, const RgbdFrame& reference)
 
 StockChain::~StockChain() = default;
 
-void StockChain::prepare() {
-    state_->load_reference();
-}
-
 std::optional<Eigen::Vector3d> StockChain::track(const RgbdFrame& frame) {
+    state_->load_reference();
     const Cloud::Ptr moved = state_->moved(state_->cut(frame));
     if (moved->size() < 50) return std::nullopt;
 

@@ -11,7 +11,8 @@
 namespace kinectlab::bench {
 
 /// What anybody would put together from the Point Cloud Library: PassThrough before the wall,
-/// OctreePointCloudChangeDetector of 20 mm against a reference frame, NormalEstimation with 50
+/// OctreePointCloudChangeDetector of 20 mm against a reference frame (its two buffers ask for that
+/// anew before every frame), NormalEstimation with 50
 /// neighbours, SACSegmentationFromNormals for a sphere.
 class StockChain {
 public:
@@ -24,9 +25,6 @@ public:
     ~StockChain();
     StockChain(const StockChain&) = delete;
     StockChain& operator=(const StockChain&) = delete;
-
-    /// Puts the reference into the octree's other buffer, before every frame; need not be timed.
-    void prepare();
 
     /// The sphere's centre in the camera frame; nothing where no sphere was found.
     [[nodiscard]] std::optional<Eigen::Vector3d> track(const RgbdFrame& frame);

@@ -39,9 +39,7 @@ SwingFrames simulated_swing(const SwingSettings& settings) {
 }
 
 Chain chain_for(const SwingFrames& frames) {
-    ObjectSpec bob;
-    bob.name = "bob";
-    bob.radius_m = frames.radius_m;
+    const ObjectSpec bob{"bob", SphereSettings{.radius_m = frames.radius_m}};
     auto chain = Chain::create({frames.camera, {bob}});
     if (!chain) throw std::runtime_error(to_text(chain.error()));
     for (const auto& frame : frames.before)

@@ -53,6 +53,7 @@ OniStatus Device::getSensorInfoList(OniSensorInfo** infos, int* count) {
 
 oni::driver::StreamBase* Device::createStream(OniSensorType sensor) {
     if (sensor != ONI_SENSOR_DEPTH && sensor != ONI_SENSOR_COLOR) return nullptr;
+    if (sensor == ONI_SENSOR_COLOR) rig_.turn_on_colour();
     const std::lock_guard lock(streams_mutex_);
     streams_.push_back(std::make_unique<Stream>(sensor, rig_.camera()));
     return streams_.back().get();

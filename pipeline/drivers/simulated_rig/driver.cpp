@@ -57,8 +57,9 @@ public:
     }
 
     oni::driver::DeviceBase* deviceOpen(const char* uri, const char* /*mode*/) override try {
-        const auto settings = parse_uri(uri);
+        auto settings = parse_uri(uri);
         if (!settings) return nullptr;
+        settings->with_colour = false;  // until a program creates the stream
         return new Device(uri, *settings, [this, name = std::string(uri)](double seconds) {
             plugs_->pull(name, std::chrono::duration<double>(seconds));
         });

@@ -37,28 +37,38 @@ RigClock::~RigClock() {
 Result<void> RigClock::set_pendulum(const simulate::PendulumParameters& parameters) {
     simulate::RigSettings settings;
     {
-        const std::lock_guard lock(rig_mutex_);
+        const auto lock = take_rig();
         settings = settings_;
     }
     settings.pendulum = parameters;
     auto rig = simulate::SimulatedRig::create(settings);
     if (!rig) return tl::unexpected(rig.error());
-    const std::lock_guard lock(rig_mutex_);
+    const auto lock = take_rig();
     rig->advance_to(rig_.truth().t_s);
+    if (settings_.with_colour) rig->turn_on_colour();
     rig_ = std::move(*rig);
-    settings_ = settings;
+    settings_.pendulum = parameters;
+    publish_truth();
     return {};
 }
 
 simulate::PendulumParameters RigClock::pendulum() const {
-    const std::lock_guard lock(rig_mutex_);
+    const auto lock = take_rig();
     return settings_.pendulum;
 }
 
 Result<void> RigClock::apply(const simulate::Command& command) {
     if (fault() == FaultKind::actuator_silent) return {};
-    const std::lock_guard lock(rig_mutex_);
-    return rig_.apply(command);
+    const auto lock = take_rig();
+    auto applied = rig_.apply(command);
+    publish_truth();
+    return applied;
+}
+
+void RigClock::turn_on_colour() {
+    const auto lock = take_rig();
+    settings_.with_colour = true;
+    rig_.turn_on_colour();
 }
 
 void RigClock::set_fault(FaultKind kind, std::chrono::duration<double> lasting) {
@@ -77,10 +87,22 @@ FaultKind RigClock::fault() const {
     return Clock::now() < fault_end_ ? fault_ : FaultKind::none;
 }
 
+std::unique_lock<std::mutex> RigClock::take_rig() const {
+    const std::lock_guard turn(turn_mutex_);
+    return std::unique_lock(rig_mutex_);
+}
+
 /// False when the rig is switched off.
 bool RigClock::wait_until(Clock::time_point due) {
     std::unique_lock lock(state_mutex_);
     return !stopping_changed_.wait_until(lock, due, [this] { return stopping_; });
+}
+
+/// With the rig's lock held.
+void RigClock::publish_truth() {
+    const simulate::Truth newest = rig_.truth();
+    const std::lock_guard lock(state_mutex_);
+    truth_ = newest;
 }
 
 void RigClock::run() {
@@ -97,19 +119,17 @@ void RigClock::run() {
         );
         if (behind > kMostFramesBehind) k += behind;
         const bool watched = watched_();
-        simulate::Truth truth;
         {
-            const std::lock_guard lock(rig_mutex_);
+            const auto lock = take_rig();
             rig_.advance_to(time_of(k));
             if (watched) rig_.render(frame);
-            truth = rig_.truth();
         }
         const FaultKind fault = this->fault();
         if (fault == FaultKind::black) std::fill(frame.depth.begin(), frame.depth.end(), 0);
         if (!wait_until(due_time(k))) return;
         {
-            const std::lock_guard lock(state_mutex_);
-            truth_ = truth;
+            const auto lock = take_rig();
+            publish_truth();
         }
         if (watched && fault != FaultKind::frozen && fault != FaultKind::unplugged) deliver_(frame);
     }

@@ -37,9 +37,14 @@ public:
     /// Takes effect with the next frame to be rendered.
     [[nodiscard]] Result<void> apply(const simulate::Command& command);
 
+    /// Turns the colour camera on for good. Frames that are due meanwhile come late.
+    void turn_on_colour();
+
     void set_fault(FaultKind kind, std::chrono::duration<double> lasting);
 
-    /// Truth of the frame that was handed out last.
+    /// Truth of the frame that was handed out last, or of the one that is ready to be when a
+    /// command came in between; the command shows at once, so that nobody mistakes an old state for
+    /// its effect.
     [[nodiscard]] simulate::Truth truth() const;
 
     [[nodiscard]] const RgbdCamera& camera() const { return camera_; }
@@ -49,6 +54,12 @@ private:
     using Clock = std::chrono::steady_clock;
     void run();
     bool wait_until(Clock::time_point due);
+
+    /// Whoever waits for the rig comes before the next frame: without turns the rendering loop
+    /// would take it again at once, and where rendering is slower than time nobody else ever got
+    /// it.
+    [[nodiscard]] std::unique_lock<std::mutex> take_rig() const;
+    void publish_truth();
     [[nodiscard]] FaultKind fault() const;
 
     const Watched watched_;
@@ -56,7 +67,8 @@ private:
     RgbdCamera camera_;
     Eigen::Isometry3d T_lab_cam_;
 
-    mutable std::mutex rig_mutex_;  ///< guards the next two
+    mutable std::mutex turn_mutex_;  ///< held while waiting for the rig, see take_rig()
+    mutable std::mutex rig_mutex_;   ///< guards the next two
     simulate::RigSettings settings_;
     simulate::SimulatedRig rig_;
 

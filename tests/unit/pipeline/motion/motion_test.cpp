@@ -142,7 +142,7 @@ TEST(Motion, FewSamplesGiveAPlaceButNoVelocity) {
 }
 
 RC_GTEST_PROP(LocalPolynomial, IsExactForCubicsAtAnyTimes, ()) {
-    const auto c = *rc::gen::array<std::array<int, 4>>(rc::gen::inRange(-5, 6));
+    const auto c = *rc::gen::container<std::vector<int>>(4, rc::gen::inRange(-5, 6));
     const auto steps = *rc::gen::container<std::vector<int>>(12, rc::gen::inRange(5, 30));
     std::vector<TimedVector> samples;
     TimeNs t = 0;
@@ -151,7 +151,9 @@ RC_GTEST_PROP(LocalPolynomial, IsExactForCubicsAtAnyTimes, ()) {
     };
     for (const int step : steps) {
         t += step * 1'000'000;
-        samples.push_back({t, Eigen::Vector3d::Constant(cubic(to_seconds(t))), {1, 2, 3}});
+        samples.push_back(
+            {t, Eigen::Vector3d::Constant(cubic(to_seconds(t))), Eigen::Vector3d(1, 2, 3)}
+        );
     }
     const TimeNs at = samples[6].t;
     const double s = to_seconds(at);
@@ -167,7 +169,9 @@ TEST(LocalPolynomial, PassesItsBandwidthAtMinusThreeDecibels) {
     for (int i = -500; i <= 500; ++i) {
         const double s = 0.001 * i;
         sine.push_back(
-            {from_seconds(s), Eigen::Vector3d::Constant(std::sin(2 * M_PI * f * s)), {1, 1, 1}}
+            {from_seconds(s),
+             Eigen::Vector3d::Constant(std::sin(2 * M_PI * f * s)),
+             Eigen::Vector3d::Ones()}
         );
     }
     const auto found = differentiate(sine, 0, half_window_s(f));

@@ -35,13 +35,10 @@ TEST(ChainAllocation, NoneOnceWarm) {
     test::BallRoom room;
     ChainSettings settings;
     settings.camera = room.camera;
-    ObjectSpec bob, ball, moved;
-    bob.name = "bob";
-    bob.radius_m = 0.05;
-    ball.name = "ball";
-    moved.name = "moved";
-    moved.method = "change";
-    settings.objects = {bob, ball, moved};
+    settings.objects = {
+        {"bob", SphereSettings{.radius_m = 0.05}},
+        {"ball", SphereSettings{}},
+        {"moved", ChangeTrackSettings{}}};
     Chain chain = std::move(Chain::create(settings).value());
     ASSERT_TRUE(chain.learn(room.frame({})));
 

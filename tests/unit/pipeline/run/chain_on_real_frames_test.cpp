@@ -21,9 +21,7 @@ TEST(ChainOnRealFrames, NothingMovesThenTwoBoxesAreThere) {
         GTEST_SKIP() << "no recordings of real sensors at " << folder;
     auto source = open_recording(folder);
     ASSERT_TRUE(source) << to_text(source.error());
-    ObjectSpec moved;
-    moved.name = "moved";
-    moved.method = "change";
+    const ObjectSpec moved{"moved", ChangeTrackSettings{}};
     auto chain = Chain::create({(*source)->info().camera, {moved}});
     ASSERT_TRUE(chain) << to_text(chain.error());
 

@@ -19,9 +19,7 @@ Outcome outcome_of(simulate::NoiseModel noise, double seconds) {
     run.rig.with_colour = false;
     run.seconds = seconds;
     const auto rig = simulate::SimulatedRig::create(run.rig);
-    ObjectSpec bob;
-    bob.name = "bob";
-    bob.radius_m = run.rig.pendulum.bob_radius_m;
+    const ObjectSpec bob{"bob", SphereSettings{.radius_m = run.rig.pendulum.bob_radius_m}};
     Chain chain = std::move(Chain::create({rig->camera(), {bob}}).value());
     const Eigen::Isometry3d T_cam_lab = rig->T_lab_cam().inverse();
 
@@ -49,7 +47,7 @@ Outcome outcome_of(simulate::NoiseModel noise, double seconds) {
 }
 
 TEST(ChainOnSimulatedRig, FollowsTheBobWithIndependentNoise) {
-    const Outcome outcome = outcome_of(simulate::NoiseModel::khoshelham, 8.0);
+    const Outcome outcome = outcome_of(simulate::NoiseModel::khoshelham, 6.0);
     EXPECT_EQ(outcome.false_tracks, 0);
     EXPECT_EQ(outcome.lost, 0) << "of " << outcome.swinging;
     EXPECT_GT(outcome.mean_square_over_claimed, 0.7);
@@ -57,7 +55,7 @@ TEST(ChainOnSimulatedRig, FollowsTheBobWithIndependentNoise) {
 }
 
 TEST(ChainOnSimulatedRig, FollowsTheBobWithAKinectsNoise) {
-    const Outcome outcome = outcome_of(simulate::NoiseModel::kinect, 60.0);
+    const Outcome outcome = outcome_of(simulate::NoiseModel::kinect, 20.0);
     EXPECT_EQ(outcome.false_tracks, 0);
     EXPECT_LT(outcome.lost, outcome.swinging / 50);
     EXPECT_LE(outcome.longest_gap, 3);

@@ -11,10 +11,7 @@ using test::Ball;
 using test::BallRoom;
 
 ObjectSpec ball_named(std::string name, std::optional<double> radius_m = 0.05) {
-    ObjectSpec spec;
-    spec.name = std::move(name);
-    spec.radius_m = radius_m;
-    return spec;
+    return {std::move(name), SphereSettings{.radius_m = radius_m}};
 }
 
 Chain chain_for(const BallRoom& room, std::vector<ObjectSpec> objects) {
@@ -91,8 +88,9 @@ TEST(Chain, TheBobsRestingPlaceLeavesNoHoleInItsPath) {
         ASSERT_TRUE(chain.learn(room.frame({at_rest})));
     EXPECT_EQ(track(chain, room.frame({at_rest})).front().status, TrackStatus::lost);
     const Ball displaced{{0.3, 0.0, 1.6}, 0.05};
-    for (int i = 0; i < 60; ++i)
-        EXPECT_EQ(track(chain, room.frame({displaced})).front().status, TrackStatus::tracked);
+    const std::vector frames{room.frame({displaced}), room.frame({displaced})};
+    for (std::size_t i = 0; i < 60; ++i)
+        EXPECT_EQ(track(chain, frames[i % 2]).front().status, TrackStatus::tracked);
     const auto bob = track(chain, room.frame({at_rest})).front();
     ASSERT_EQ(bob.status, TrackStatus::tracked);
     EXPECT_LT((bob.p_cam - at_rest.centre_cam).norm(), 1e-3);
@@ -105,8 +103,9 @@ TEST(Chain, AnObjectBeforeNothingCounts) {
     for (int i = 0; i < 5; ++i)
         ASSERT_TRUE(chain.learn(room.frame({})));
     const Ball ball{{0.1, 0.0, 1.6}, 0.05};
-    for (int i = 0; i < 300; ++i)
-        ASSERT_EQ(track(chain, room.frame({ball})).front().status, TrackStatus::tracked) << i;
+    const std::vector frames{room.frame({ball}), room.frame({ball})};
+    for (std::size_t i = 0; i < 300; ++i)
+        ASSERT_EQ(track(chain, frames[i % 2]).front().status, TrackStatus::tracked) << i;
 }
 
 TEST(Chain, SeveralBallsKeepTheirNames) {
@@ -115,10 +114,10 @@ TEST(Chain, SeveralBallsKeepTheirNames) {
         chain_for(room, {ball_named("left"), ball_named("right"), ball_named("big", 0.09)});
     ASSERT_TRUE(chain.learn(room.frame({})));
     double last_y = 0.0;
-    for (int i = 0; i < 30; ++i) {
+    for (int i = 0; i < 10; ++i) {
         const std::vector<Ball> balls{
-            {{-0.25 + 0.005 * i, -0.1, 1.5}, 0.05},
-            {{0.25 - 0.005 * i, 0.1, 1.5}, 0.05},
+            {{-0.25 + 0.015 * i, -0.1, 1.5}, 0.05},
+            {{0.25 - 0.015 * i, 0.1, 1.5}, 0.05},
             {{0.35, -0.25, 1.9}, 0.09}};
         const auto samples = track(chain, room.frame(balls));
         ASSERT_EQ(samples.size(), 3U);
@@ -127,7 +126,7 @@ TEST(Chain, SeveralBallsKeepTheirNames) {
         EXPECT_NEAR(std::abs(samples[0].p_cam.y()), 0.1, 0.002);
         EXPECT_NEAR(samples[1].p_cam.y(), -samples[0].p_cam.y(), 0.004);
         EXPECT_LT((samples[2].p_cam - balls[2].centre_cam).norm(), 0.003);
-        if (i > 0) EXPECT_GT(samples[0].p_cam.y() * last_y, 0.0) << "swapped in frame " << i;
+        EXPECT_GE(samples[0].p_cam.y() * last_y, 0.0) << "swapped in frame " << i;
         last_y = samples[0].p_cam.y();
     }
 }
@@ -147,7 +146,7 @@ TEST(Chain, AHandIsNoBob) {
     for (const auto& radius_m : {std::optional(0.05), std::optional<double>()}) {
         Chain chain = chain_for(room, {ball_named("bob", radius_m)});
         ASSERT_TRUE(chain.learn(room.frame({})));
-        for (int i = 0; i < 20; ++i) {
+        for (int i = 0; i < 8; ++i) {
             // A forearm and a flat hand, slanted in depth.
             RgbdFrame frame = room.frame({});
             for (int v = 200; v < 480; ++v)
@@ -162,9 +161,7 @@ TEST(Chain, AHandIsNoBob) {
 
 TEST(Chain, MethodChangeGivesASampleForEachThingThatMoves) {
     BallRoom room;
-    ObjectSpec moved;
-    moved.name = "moved";
-    moved.method = "change";
+    const ObjectSpec moved{"moved", ChangeTrackSettings{}};
     Chain chain = chain_for(room, {moved});
     ASSERT_TRUE(chain.learn(room.frame({})));
     EXPECT_TRUE(track(chain, room.frame({})).empty());

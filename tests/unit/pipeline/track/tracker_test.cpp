@@ -1,18 +1,12 @@
 #include "pipeline/track/tracker.hpp"
 
-#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 namespace kinectlab {
 namespace {
 
-using testing::HasSubstr;
-
-ObjectSpec object(std::string name, std::string method = "sphere") {
-    ObjectSpec spec;
-    spec.name = std::move(name);
-    spec.method = std::move(method);
-    return spec;
+ObjectSpec object(std::string name, MethodSettings settings = SphereSettings{}) {
+    return {std::move(name), settings};
 }
 
 Error refusal(std::vector<ObjectSpec> objects) {
@@ -22,7 +16,7 @@ Error refusal(std::vector<ObjectSpec> objects) {
 }
 
 TEST(MakeTrackers, OneForEachMethodInUse) {
-    const std::vector objects{object("a"), object("b", "change"), object("c")};
+    const std::vector objects{object("a"), object("b", ChangeTrackSettings{}), object("c")};
     const auto trackers = make_trackers(RgbdCamera{}, objects);
     ASSERT_TRUE(trackers);
     EXPECT_EQ(trackers->size(), 2U);
@@ -32,23 +26,12 @@ TEST(MakeTrackers, RefusesAnEmptyList) {
     EXPECT_EQ(refusal({}).field, "objects");
 }
 
-TEST(MakeTrackers, NamesTheNearestMethod) {
-    const Error error = refusal({object("bob", "spere")});
-    EXPECT_EQ(error.field, "objects[0].method");
-    EXPECT_THAT(error.message, HasSubstr("\"spere\""));
-    EXPECT_THAT(error.cure, HasSubstr("nearest is \"sphere\""));
-    EXPECT_THAT(refusal({object("bob", "chnge")}).cure, HasSubstr("nearest is \"change\""));
-}
-
 TEST(MakeTrackers, RefusesRadiiThatAreNone) {
     for (const double radius : {0.0, -0.05, 5.0, std::nan("")}) {
-        auto bob = object("bob");
-        bob.radius_m = radius;
+        const auto bob = object("bob", SphereSettings{.radius_m = radius});
         EXPECT_EQ(refusal({bob}).field, "objects[0].radius_m") << radius;
     }
-    auto bob = object("bob");
-    bob.min_radius_m = 0.2;
-    bob.max_radius_m = 0.1;
+    const auto bob = object("bob", SphereSettings{.min_radius_m = 0.2, .max_radius_m = 0.1});
     EXPECT_EQ(refusal({bob}).field, "objects[0].min_radius_m");
 }
 

@@ -60,8 +60,8 @@ TEST(Definition, TheBobHasTheRunsRadius) {
     const auto objects = objects_for(pendulum(), {{"bob_radius_m", 0.03}});
     ASSERT_EQ(objects.size(), 1u);
     EXPECT_EQ(objects[0].name, "bob");
-    EXPECT_EQ(objects[0].method, "sphere");
-    EXPECT_EQ(objects[0].radius_m, 0.03);
+    EXPECT_EQ(method_of(objects[0]), "sphere");
+    EXPECT_EQ(std::get<SphereSettings>(objects[0].settings).radius_m, 0.03);
 }
 
 TEST(Definition, GoesThroughJsonUnchanged) {

@@ -28,10 +28,11 @@ TEST(Objects, ReadsSpheresAndWhateverMoved) {
                              .and_then(read_objects);
     ASSERT_TRUE(objects) << to_text(objects.error());
     ASSERT_EQ(objects->size(), 3u);
-    EXPECT_EQ((*objects)[0].radius_m, 0.05);
-    EXPECT_FALSE((*objects)[1].radius_m);
-    EXPECT_EQ((*objects)[1].min_radius_m, 0.02);
-    EXPECT_EQ((*objects)[2].method, "change");
+    EXPECT_EQ(std::get<SphereSettings>((*objects)[0].settings).radius_m, 0.05);
+    const auto& free = std::get<SphereSettings>((*objects)[1].settings);
+    EXPECT_FALSE(free.radius_m);
+    EXPECT_EQ(free.min_radius_m, 0.02);
+    EXPECT_EQ(method_of((*objects)[2]), "change");
 }
 
 struct Wrong {

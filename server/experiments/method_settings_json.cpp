@@ -1,0 +1,101 @@
+#include "server/experiments/method_settings_json.hpp"
+
+#include <algorithm>
+#include <array>
+
+#include <nlohmann/json.hpp>
+
+#include "pipeline/core/nearest_name.hpp"
+
+namespace kinectlab::experiments {
+namespace {
+
+constexpr double kMaxRadius = 2.0;  // m, of anything that the sensor sees as a whole
+
+double read_radius(ObjectReader& reader, const std::string& key, double otherwise) {
+    const double radius = reader.number_or(key, otherwise);
+    if (reader.has(key) && !(radius > 0.0 && radius <= kMaxRadius)) {
+        reader.refuse(
+            key, "is " + nlohmann::json(radius).dump(), "give metres, above 0 and up to 2"
+        );
+    }
+    return radius;
+}
+
+/// A known radius, or bounds of a free one.
+template <class Settings>
+void read_radii(ObjectReader& reader, Settings& settings) {
+    if (reader.has("radius_m")) settings.radius_m = read_radius(reader, "radius_m", 0.0);
+    settings.min_radius_m = read_radius(reader, "min_radius_m", settings.min_radius_m);
+    settings.max_radius_m = read_radius(reader, "max_radius_m", settings.max_radius_m);
+    if (settings.radius_m && (reader.has("min_radius_m") || reader.has("max_radius_m"))) {
+        reader.refuse(
+            "radius_m",
+            "is given together with limits for a free radius",
+            "give either radius_m or min_radius_m and max_radius_m"
+        );
+    }
+    if (settings.min_radius_m >= settings.max_radius_m) {
+        reader.refuse(
+            "min_radius_m", "is not below max_radius_m", "give min_radius_m < max_radius_m"
+        );
+    }
+}
+
+MethodSettings read_sphere(ObjectReader& reader) {
+    SphereSettings settings;
+    read_radii(reader, settings);
+    return settings;
+}
+
+MethodSettings read_change(ObjectReader&) {
+    return ChangeTrackSettings{};
+}
+
+struct MethodReader {
+    std::vector<std::string> keys;
+    MethodSettings (*read)(ObjectReader&);
+};
+
+/// In the order of kTrackingMethods.
+const std::array<MethodReader, kTrackingMethods.size()>& readers() {
+    static const std::array<MethodReader, kTrackingMethods.size()> all{{
+        {{"radius_m", "min_radius_m", "max_radius_m"}, read_sphere},
+        {{}, read_change},
+    }};
+    return all;
+}
+
+const MethodReader* reader_of(const std::string& method) {
+    const auto* const found = std::find(kTrackingMethods.begin(), kTrackingMethods.end(), method);
+    if (found == kTrackingMethods.end()) return nullptr;
+    return &readers()[static_cast<std::size_t>(found - kTrackingMethods.begin())];
+}
+
+}  // namespace
+
+Result<void> check_method(const std::string& method, const std::string& field) {
+    if (reader_of(method) != nullptr) return {};
+    const std::vector<std::string> names(kTrackingMethods.begin(), kTrackingMethods.end());
+    std::string all;
+    for (const auto& name : names)
+        all += (all.empty() ? "" : ", ") + name;
+    return fail(
+        ErrorCode::invalid_argument,
+        field,
+        "is \"" + method.substr(0, 60) + "\"",
+        "did you mean " + nearest_name(method, names) + "? Valid: " + all
+    );
+}
+
+std::vector<std::string> setting_names(const std::string& method) {
+    const auto* reader = reader_of(method);
+    return reader == nullptr ? std::vector<std::string>{} : reader->keys;
+}
+
+MethodSettings read_settings(ObjectReader& reader, const std::string& method) {
+    const auto* found = reader_of(method);
+    return found == nullptr ? MethodSettings{} : found->read(reader);
+}
+
+}  // namespace kinectlab::experiments

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "pipeline/core/trajectory.hpp"
+#include "server/lab/run.hpp"
+#include "server/store/database.hpp"
+
+namespace kinectlab::store {
+
+struct StoredPose {
+    std::string object;
+    MotionSample sample;  ///< acceleration and the covariance of the orientation are not stored
+};
+
+/// What was measured in a run, one row for each object and frame, so that a crash loses at most
+/// what was not yet appended.
+class PoseRepository {
+public:
+    explicit PoseRepository(Database& database) : database_(database) {}
+
+    /// On the disk when it returns. Poses of an object must come in order of time.
+    void append(lab::RunId run, std::span<const StoredPose> poses);
+    /// Puts the final trajectories (gaps filled, velocities from both sides) in the place of what
+    /// was measured live.
+    void replace(lab::RunId run, std::span<const Trajectory> trajectories);
+    /// In order of time.
+    [[nodiscard]] std::vector<Trajectory> of_run(lab::RunId run);
+    [[nodiscard]] std::size_t count(lab::RunId run);
+
+private:
+    Database& database_;
+};
+
+}  // namespace kinectlab::store

@@ -1,0 +1,177 @@
+#include <limits>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/unit/pipeline/analysis/swing_generator.hpp"
+
+// Bad input: an error that says what is wrong, never a number. Poor input: a number and a warning.
+
+namespace kinectlab::testing {
+namespace {
+
+using ::testing::Contains;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+
+Error error_of(const Trajectory& path, const PendulumSettings& settings = {}) {
+    const auto result = analyse_pendulum(path, settings);
+    if (!result) return result.error();
+    ADD_FAILURE() << "a number came out: g = " << result->measurements.front().value;
+    return {};
+}
+
+std::vector<std::string> warnings_of(
+    const Trajectory& path, const PendulumSettings& settings = {}
+) {
+    const auto result = analyse_pendulum(path, settings);
+    if (result) return result->warnings;
+    ADD_FAILURE() << to_text(result.error());
+    return {};
+}
+
+TEST(PendulumErrors, NothingAtAll) {
+    EXPECT_THAT(error_of({"bob", {}}).message, HasSubstr("0 of 0 frames"));
+}
+
+TEST(PendulumErrors, NearlyAllLost) {
+    Trajectory path = generate({});
+    for (std::size_t i = 0; i < path.samples.size(); ++i)
+        if (i % 60 != 0) path.samples[i].status = TrackStatus::lost;
+    EXPECT_THAT(error_of(path).message, HasSubstr("seen in 15 of 900 frames"));
+}
+
+TEST(PendulumErrors, InterpolatedSamplesDoNotCount) {
+    Trajectory path = generate({});
+    for (auto& m : path.samples)
+        m.status = TrackStatus::interpolated;
+    EXPECT_THAT(error_of(path).message, HasSubstr("seen in 0 of 900 frames"));
+}
+
+TEST(PendulumErrors, FewerThanThreePeriods) {
+    for (const double seconds : {1.5, 3.0, 5.5}) {
+        const Error error = error_of(with_noise(generate({.seconds = seconds}), 3));
+        EXPECT_EQ(error.code, ErrorCode::bad_data);
+        EXPECT_THAT(error.message, HasSubstr("periods"));
+        EXPECT_THAT(error.cure, HasSubstr("three periods"));
+    }
+}
+
+TEST(PendulumErrors, FewerThanThreePeriodsAfterTheRelease) {
+    EXPECT_THAT(
+        error_of(with_noise(generate({.seconds = 4.5, .rest = 4.0, .held = 2.0}), 3)).message,
+        HasSubstr("swing")
+    );
+}
+
+TEST(PendulumErrors, NoMotion) {
+    EXPECT_THAT(error_of(generate({.amplitude_deg = 0})).message, HasSubstr("does not swing"));
+    for (unsigned seed = 1; seed <= 5; ++seed)
+        EXPECT_THAT(
+            error_of(with_noise(generate({.amplitude_deg = 0}), seed)).message,
+            HasSubstr("does not swing")
+        );
+}
+
+TEST(PendulumErrors, SomethingElseThatMoves) {
+    std::mt19937_64 random(4);
+    std::normal_distribution<double> push(0.0, 0.02);
+    Trajectory path = generate({.amplitude_deg = 0});
+    Eigen::Vector3d walk = Eigen::Vector3d::Zero();
+    for (auto& m : path.samples) {
+        walk += Eigen::Vector3d(push(random), push(random), push(random));
+        m.p_lab += walk;
+    }
+    EXPECT_EQ(error_of(path).code, ErrorCode::bad_data);
+}
+
+TEST(PendulumErrors, AmplitudeBeyond80Degrees) {
+    for (const double degrees : {82.0, 85.0, 120.0, 160.0})
+        EXPECT_THAT(error_of(generate({.amplitude_deg = degrees})).message, HasSubstr("80°"))
+            << degrees;
+}
+
+TEST(PendulumErrors, NotANumber) {
+    Trajectory path = generate({});
+    path.samples[7].p_lab.y() = std::nan("");
+    EXPECT_THAT(error_of(path).message, HasSubstr("sample 7"));
+    path = generate({});
+    path.samples[8].covariance(1, 1) = std::numeric_limits<double>::infinity();
+    EXPECT_THAT(error_of(path).message, HasSubstr("sample 8"));
+}
+
+TEST(PendulumErrors, TimesThatDoNotIncrease) {
+    Trajectory path = generate({});
+    path.samples[9].t = path.samples[8].t;
+    EXPECT_THAT(error_of(path).message, HasSubstr("sample 9"));
+}
+
+TEST(PendulumErrors, SettingsOutOfRangeAreNamed) {
+    const auto field_of = [](auto change) {
+        PendulumSettings settings;
+        change(settings);
+        const Error error = error_of(generate({.seconds = 7.0}), settings);
+        EXPECT_EQ(error.code, ErrorCode::invalid_argument);
+        EXPECT_FALSE(error.cure.empty());
+        return error.field;
+    };
+    EXPECT_EQ(field_of([](auto& s) { s.length_m = 0.0; }), "length_m");
+    EXPECT_EQ(field_of([](auto& s) { s.length_m = std::nan(""); }), "length_m");
+    EXPECT_EQ(field_of([](auto& s) { s.length_u_m = -1e-3; }), "length_u_m");
+    EXPECT_EQ(field_of([](auto& s) { s.bob_radius_m = 1.5; }), "bob_radius_m");
+    EXPECT_EQ(field_of([](auto& s) { s.latitude_deg = 91.0; }), "latitude_deg");
+    EXPECT_EQ(field_of([](auto& s) { s.depth_scale_u = -1.0; }), "depth_scale_u");
+    EXPECT_EQ(field_of([](auto& s) { s.clock_u = std::nan(""); }), "clock_u");
+}
+
+TEST(PendulumWarnings, NoneForAGoodRun) {
+    EXPECT_THAT(warnings_of(with_noise(generate({}), 1)), IsEmpty());
+}
+
+TEST(PendulumWarnings, FewPeriods) {
+    EXPECT_THAT(
+        warnings_of(with_noise(generate({.seconds = 9.0}), 1)),
+        Contains(HasSubstr("periods were recorded"))
+    );
+}
+
+TEST(PendulumWarnings, SmallSwing) {
+    EXPECT_THAT(
+        warnings_of(with_noise(generate({.amplitude_deg = 0.5}), 1)),
+        Contains(HasSubstr("small against"))
+    );
+}
+
+TEST(PendulumWarnings, WrongLength) {
+    PendulumSettings settings;
+    settings.length_m = 1.1;
+    EXPECT_THAT(
+        warnings_of(with_noise(generate({.amplitude_deg = 20}), 1), settings),
+        Contains(HasSubstr("but length_m says 1.10 m"))
+    );
+}
+
+TEST(PendulumWarnings, LostFrames) {
+    Trajectory path = with_noise(generate({}), 1);
+    for (std::size_t i = 0; i < path.samples.size(); ++i)
+        if (i % 2 == 1) path.samples[i].status = TrackStatus::lost;
+    EXPECT_THAT(warnings_of(path), Contains(HasSubstr("not seen in 50 %")));
+}
+
+TEST(PendulumWarnings, MisfitOfTheModel) {
+    Trajectory path = with_noise(generate({}), 1);
+    for (auto& m : path.samples)
+        m.covariance *= 0.1;
+    EXPECT_THAT(warnings_of(path), Contains(HasSubstr("reduced chi²")));
+}
+
+TEST(PendulumWarnings, TiltedCamera) {
+    Trajectory path = with_noise(generate({}), 1, {1e-4, 1e-4});
+    const Eigen::AngleAxisd tilt(0.06, Eigen::Vector3d::UnitY());
+    for (auto& m : path.samples)
+        m.p_lab = tilt * m.p_lab;
+    EXPECT_THAT(warnings_of(path), Contains(HasSubstr("plumb line")));
+}
+
+}  // namespace
+}  // namespace kinectlab::testing

@@ -1,0 +1,141 @@
+/** What the server says and hears, field for field as in server/api/README.md. Nothing else in the
+ * client knows the wire. Times are RFC 3339 in UTC, lengths metres. */
+
+export type Role = 'student' | 'assistant' | 'instructor' | 'staff' | 'admin';
+
+export interface User {
+  id: number;
+  username: string;
+  display_name: string;
+  role: Role;
+  must_change_password: boolean;
+}
+
+export interface Session {
+  user: User;
+  csrf_token: string;
+}
+
+export interface NewUser {
+  username: string;
+  display_name: string;
+  role: Role;
+}
+
+export interface CreatedUser {
+  user: User;
+  one_time_password: string;
+}
+
+export interface Rig {
+  id: string;
+  name: string;
+  state: 'idle' | 'busy' | 'offline';
+  sentence: string;
+  simulated: boolean;
+  experiments: string[];
+  frame_rate_hz: number;
+  frames_lost: number;
+  current_run: number | null;
+}
+
+export interface Slot {
+  rig: string;
+  start: string;
+  end: string;
+}
+
+export interface NewBooking extends Slot {
+  experiment: string;
+}
+
+export interface Booking extends NewBooking {
+  id: number;
+  mine: boolean;
+  user: string | null;
+}
+
+export type RunState =
+  | 'preparing'
+  | 'ready'
+  | 'releasing'
+  | 'measuring'
+  | 'analysing'
+  | 'completed'
+  | 'aborted'
+  | 'failed'
+  | 'interrupted';
+
+export interface BudgetLine {
+  source: string;
+  u: number;
+}
+
+export interface Measurement {
+  name: string;
+  value: number;
+  u: number;
+  unit: string;
+  k?: number;
+  budget?: BudgetLine[];
+}
+
+export interface Result {
+  experiment: string;
+  parameters: Record<string, number>;
+  results: Measurement[];
+  provenance: Record<string, unknown>;
+}
+
+export interface Run {
+  id: number;
+  rig: string;
+  experiment: string;
+  user: string;
+  state: RunState;
+  reason: string | null;
+  parameters: Record<string, number>;
+  created_at: string;
+  started_at: string | null;
+  ended_at: string | null;
+  duration_s: number | null;
+  frames: number;
+  frames_lost: number;
+  result: Result | null;
+  warnings: string[];
+}
+
+export interface RunPage {
+  runs: Run[];
+  next: number | null;
+}
+
+export type Column = (number | null)[];
+
+/** `GET /runs/{id}/fit`: positions in the lab frame, null where nothing was measured. */
+export interface Fit {
+  t_s: number[];
+  measured: Record<'x' | 'y' | 'z', Column>;
+  fit: Record<'x' | 'y' | 'z', Column>;
+  residual: Record<'x' | 'y' | 'z', Column>;
+}
+
+export interface LiveTicket {
+  ticket: string;
+  expires_at: string;
+}
+
+/** RFC 9457 problem document. */
+export interface Problem {
+  title?: string;
+  status?: number;
+  detail?: string;
+  errors?: FieldError[];
+  alternatives?: Slot[];
+}
+
+export interface FieldError {
+  field: string;
+  message: string;
+  cure?: string;
+}

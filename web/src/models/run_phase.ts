@@ -1,0 +1,143 @@
+/** What a run is doing, said in a sentence, and the one thing to do about it. */
+import type { Booking, Rig, Run, RunState } from '../api/types';
+import { clockTime, duration, minute, slotText } from './time';
+import { bookingInterval } from './slots';
+
+export type Action = 'prepare' | 'release' | 'stop' | 'result' | 'book' | 'wait';
+export type Tone = 'calm' | 'ready' | 'active' | 'good' | 'bad';
+
+export interface Phase {
+  sentence: string;
+  tone: Tone;
+  /** What the main button does; `wait` shows it greyed, with its label saying for what. */
+  action: Action;
+  label: string;
+  /** Whether this viewer may end the run without a result. */
+  abortable: boolean;
+}
+
+export interface Situation {
+  rig: Rig;
+  /** The rig's newest run, if any. */
+  run: Run | null;
+  /** The viewer's bookings on this rig. */
+  bookings: Booking[];
+  /** Whether the viewer may command this run: it is theirs, or they assist. */
+  mayCommand: boolean;
+  now: number;
+}
+
+const underWay: RunState[] = ['preparing', 'ready', 'releasing', 'measuring', 'analysing'];
+
+export function isUnderWay(state: RunState): boolean {
+  return underWay.includes(state);
+}
+
+/** The viewer's slot at this moment. */
+export function slotNow(bookings: Booking[], now: number): Booking | null {
+  return bookings.find((b) => b.mine && bookingInterval(b).start <= now && now < bookingInterval(b).end) ?? null;
+}
+
+export function nextSlot(bookings: Booking[], now: number): Booking | null {
+  const later = bookings.filter((b) => b.mine && bookingInterval(b).start > now);
+  return later.sort((a, b) => Date.parse(a.start) - Date.parse(b.start))[0] ?? null;
+}
+
+export function phaseOf(s: Situation): Phase {
+  if (s.rig.state === 'offline') {
+    return wait('bad', 'The rig is switched off or its camera is unplugged. It is tried again by itself; your slot stays yours.', 'Waiting for the rig');
+  }
+  if (s.run && isUnderWay(s.run.state)) return underWayPhase(s.run, s);
+
+  const slot = slotNow(s.bookings, s.now);
+  const ended = s.run && s.mayCommand ? s.run : null;
+  if (ended && ended.state === 'completed' && endedInSlot(ended, slot)) {
+    return { sentence: 'Done. The result is there.', tone: 'good', action: 'result', label: 'See result', abortable: false };
+  }
+  if (slot) {
+    const left = bookingInterval(slot).end - s.now;
+    const yours = `The rig is yours until ${clockTime(bookingInterval(slot).end)}.`;
+    const failure = ended && ended.state !== 'completed' && endedInSlot(ended, slot) ? `${endSentence(ended)} ` : '';
+    const hurry = left < 2 * minute ? ' Less than two minutes are left: measure briefly.' : ' Choose the settings, then prepare it.';
+    return { sentence: failure + yours + hurry, tone: failure ? 'bad' : 'ready', action: 'prepare', label: 'Prepare', abortable: false };
+  }
+  const next = nextSlot(s.bookings, s.now);
+  if (next) {
+    const at = bookingInterval(next);
+    return wait('calm', `Your slot is ${slotText(at.start, at.end, undefined, s.now)}. Until then you can watch.`, `Starts in ${duration(at.start - s.now)}`);
+  }
+  return { sentence: 'You are watching. To run the experiment yourself, book a slot.', tone: 'calm', action: 'book', label: 'Book a slot', abortable: false };
+}
+
+function underWayPhase(run: Run, s: Situation): Phase {
+  const mine = s.mayCommand;
+  switch (run.state) {
+    case 'preparing':
+      return { ...wait('active', 'The rig is getting ready: it stops the bob, looks at the empty scene and lifts the bob to its angle.', 'Preparing …'), abortable: mine };
+    case 'ready':
+      return mine
+        ? { sentence: 'The bob is held at its angle. Release it when you are ready.', tone: 'ready', action: 'release', label: 'Release', abortable: true }
+        : wait('ready', 'The bob is held at its angle and waits to be released.', 'Ready');
+    case 'releasing':
+      return { ...wait('active', 'The magnet lets go of the bob …', 'Releasing …'), abortable: mine };
+    case 'measuring':
+      return mine
+        ? { sentence: 'The bob swings and every frame is measured. Stop when you have seen enough, or let it run to its end.', tone: 'active', action: 'stop', label: 'Stop', abortable: true }
+        : wait('active', 'The bob swings and every frame is measured.', 'Measuring');
+    default:
+      return { ...wait('active', 'The motion is measured. The fit of the pendulum is being made …', 'Analysing …'), abortable: mine };
+  }
+}
+
+/** How far the measurement is: seconds done and in all; null while nothing is measured. */
+export function progress(run: Run | null, now: number): { done: number; total: number } | null {
+  if (run?.state !== 'measuring' || !run.started_at) return null;
+  const total = run.parameters['duration_s'] ?? run.duration_s;
+  if (!total) return null;
+  const done = (now - Date.parse(run.started_at)) / 1000;
+  return { done: Math.min(total, Math.max(0, done)), total };
+}
+
+/** How a run ended, as a sentence. */
+export function endSentence(run: Run): string {
+  const why = run.reason ? ` ${sentenceCase(run.reason)}` : '';
+  switch (run.state) {
+    case 'completed':
+      return 'The run is complete.';
+    case 'aborted':
+      return `The run was aborted.${why}`;
+    case 'failed':
+      return `The run failed.${why}`;
+    case 'interrupted':
+      return `The run was interrupted.${why || ' The laboratory was restarted.'} Nothing is wrong on your side.`;
+    default:
+      return 'The run is under way.';
+  }
+}
+
+const stateWords: Record<RunState, string> = {
+  preparing: 'Preparing',
+  ready: 'Ready to release',
+  releasing: 'Releasing',
+  measuring: 'Measuring',
+  analysing: 'Analysing',
+  completed: 'Completed',
+  aborted: 'Aborted',
+  failed: 'Failed',
+  interrupted: 'Interrupted',
+};
+
+export const stateWord = (state: RunState): string => stateWords[state] ?? state;
+
+function endedInSlot(run: Run, slot: Booking | null): boolean {
+  return slot !== null && Date.parse(run.created_at) >= bookingInterval(slot).start;
+}
+
+function wait(tone: Tone, sentence: string, label: string): Phase {
+  return { sentence, tone, action: 'wait', label, abortable: false };
+}
+
+function sentenceCase(text: string): string {
+  const t = text.trim();
+  return t.charAt(0).toUpperCase() + t.slice(1) + (/[.!?]$/.test(t) ? '' : '.');
+}

@@ -1,0 +1,46 @@
+/** Which page an address names. Pure. */
+
+export type Route =
+  | { page: 'home' }
+  | { page: 'rigs' }
+  | { page: 'rig'; rig: string }
+  | { page: 'session'; rig: string }
+  | { page: 'runs' }
+  | { page: 'run'; run: number }
+  | { page: 'people' }
+  | { page: 'password' }
+  | { page: 'missing' };
+
+export function matchRoute(path: string): Route {
+  const parts = path.split('/').filter((p) => p !== '').map(decode);
+  const [first, second, third, ...rest] = parts;
+  if (rest.length > 0) return { page: 'missing' };
+  if (first === undefined) return { page: 'home' };
+  if (second === undefined) {
+    if (first === 'rigs' || first === 'runs' || first === 'people' || first === 'password') return { page: first };
+    return { page: 'missing' };
+  }
+  if (first === 'rigs' && third === undefined) return { page: 'rig', rig: second };
+  if (first === 'rigs' && third === 'session') return { page: 'session', rig: second };
+  if (first === 'runs' && third === undefined && /^\d+$/.test(second)) return { page: 'run', run: Number(second) };
+  return { page: 'missing' };
+}
+
+export const paths = {
+  home: '/',
+  rigs: '/rigs',
+  rig: (id: string) => `/rigs/${encodeURIComponent(id)}`,
+  session: (id: string) => `/rigs/${encodeURIComponent(id)}/session`,
+  runs: '/runs',
+  run: (id: number) => `/runs/${id}`,
+  people: '/people',
+  password: '/password',
+};
+
+function decode(part: string): string {
+  try {
+    return decodeURIComponent(part);
+  } catch {
+    return part;
+  }
+}

@@ -1,0 +1,84 @@
+import { describe, expect, it } from 'vitest';
+import type { Booking, Rig, Run, RunState } from '../../src/api/types';
+import { endSentence, phaseOf, progress, type Situation } from '../../src/models/run_phase';
+
+const now = Date.parse('2026-11-22T09:10:00Z');
+const rig: Rig = {
+  id: 'rig-1', name: 'Rig 1', state: 'idle', sentence: 'Free', simulated: true, experiments: ['pendulum'], frame_rate_hz: 30, frames_lost: 0,
+  current_run: null,
+};
+const slot: Booking = { id: 1, rig: 'rig-1', experiment: 'pendulum', start: '2026-11-22T09:00:00Z', end: '2026-11-22T09:30:00Z', mine: true, user: null };
+
+function run(state: RunState, more: Partial<Run> = {}): Run {
+  return {
+    id: 7, rig: 'rig-1', experiment: 'pendulum', user: 'Ada', state, reason: null, parameters: { duration_s: 30 }, created_at: '2026-11-22T09:05:00Z',
+    started_at: '2026-11-22T09:09:50Z', ended_at: null, duration_s: 30, frames: 0, frames_lost: 0, result: null, warnings: [], ...more,
+  };
+}
+
+const situation = (more: Partial<Situation>): Situation => ({ rig, run: null, bookings: [slot], mayCommand: true, now, ...more });
+const action = (more: Partial<Situation>) => phaseOf(situation(more)).action;
+
+describe('the one button', () => {
+  it('follows the run from prepare to the result', () => {
+    expect(action({})).toBe('prepare');
+    const states: RunState[] = ['preparing', 'ready', 'releasing', 'measuring', 'analysing', 'completed'];
+    expect(states.map((s) => action({ run: run(s) }))).toEqual(['wait', 'release', 'wait', 'stop', 'wait', 'result']);
+  });
+
+  it('lets one try again after a run without a result', () => {
+    for (const state of ['aborted', 'failed', 'interrupted'] as const) {
+      const phase = phaseOf(situation({ run: run(state, { reason: 'the bob was not seen' }) }));
+      expect(phase.action).toBe('prepare');
+      expect(phase.sentence).toContain('The bob was not seen.');
+    }
+  });
+
+  it('begins anew in a slot with the run of another slot on the rig', () => {
+    expect(action({ run: run('completed', { created_at: '2026-11-22T08:30:00Z' }) })).toBe('prepare');
+  });
+
+  it('shows those who only watch nothing to press but a booking', () => {
+    const others = { ...slot, mine: false };
+    expect(action({ bookings: [others], mayCommand: false })).toBe('book');
+    for (const state of ['ready', 'measuring'] as const) {
+      const phase = phaseOf(situation({ bookings: [others], mayCommand: false, run: run(state) }));
+      expect(phase.action).toBe('wait');
+      expect(phase.abortable).toBe(false);
+    }
+  });
+
+  it('waits for a slot that is to come, and says for how long', () => {
+    const phase = phaseOf(situation({ now: Date.parse('2026-11-22T08:56:00Z') }));
+    expect(phase.action).toBe('wait');
+    expect(phase.label.replaceAll('\u00a0', ' ')).toBe('Starts in 4 min');
+  });
+
+  it('is free again the moment the slot ends', () => {
+    expect(action({ now: Date.parse(slot.end) - 1 })).toBe('prepare');
+    expect(action({ now: Date.parse(slot.end) })).toBe('book');
+  });
+
+  it('waits for a rig that is off, whatever its run says', () => {
+    const phase = phaseOf(situation({ rig: { ...rig, state: 'offline' }, run: run('measuring') }));
+    expect(phase.action).toBe('wait');
+    expect(phase.tone).toBe('bad');
+  });
+
+  it('offers to abort while a run is under way, and then only', () => {
+    expect(phaseOf(situation({ run: run('measuring') })).abortable).toBe(true);
+    expect(phaseOf(situation({ run: run('completed') })).abortable).toBe(false);
+  });
+});
+
+it('knows how far the measurement is', () => {
+  expect(progress(run('measuring'), now)).toEqual({ done: 10, total: 30 });
+  expect(progress(run('measuring'), now + 60_000)).toEqual({ done: 30, total: 30 });
+  expect(progress(run('ready'), now)).toBeNull();
+  expect(progress(null, now)).toBeNull();
+});
+
+it('says how a run ended, with the reason as a sentence', () => {
+  expect(endSentence(run('failed', { reason: 'fewer than three periods' }))).toBe('The run failed. Fewer than three periods.');
+  expect(endSentence(run('interrupted'))).toContain('The laboratory was restarted.');
+});
