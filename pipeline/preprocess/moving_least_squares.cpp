@@ -159,17 +159,24 @@ struct Window {
     bool quadratic;
 };
 
-/// Smooths one row. `weights` has room for (2 kMostPixels)² entries.
+/// θ by distance in pixels. Without AVX eight floats are aligned to 16 bytes only, but the loop
+/// that is compiled for AVX takes 32 for granted.
+struct alignas(32) Weights {
+    Float8 of[kMostPixels + 1];
+};
+
+/// Smooths one row.
 KINECTLAB_HOT_LOOP void smooth_row(
     const PaddedDepth& depth,
     int v,
     int width,
     const Window& window,
-    Float8* weights,
+    Weights& all_weights,
     float* z_out,
     std::uint8_t* fitted
 ) {
     const float* centre = depth.row(v);
+    Float8* const weights = all_weights.of;
     for (int u = 0; u < width; u += kLanes) {
         const Float8 read = load8(centre + u);
         const Mask8 valid = read > 0.0F;
@@ -278,7 +285,7 @@ Result<Smoothed> smooth_organised(
         static_cast<float>(camera.fx),
         static_cast<float>(camera.fy),
         settings.basis == Basis::quadratic};
-    std::vector<Float8> weights(kMostPixels + 1);
+    Weights weights;
     for (int v = 0; v < cloud.height; ++v) {
         const auto row = static_cast<std::ptrdiff_t>(v) * cloud.width;
         smooth_row(
@@ -286,7 +293,7 @@ Result<Smoothed> smooth_organised(
             v,
             cloud.width,
             window,
-            weights.data(),
+            weights,
             result.cloud.z.data() + row,
             result.fitted.data() + row
         );

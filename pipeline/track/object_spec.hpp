@@ -17,7 +17,9 @@ struct SphereSettings {
 };
 
 /// Method "change": whatever moved.
-struct ChangeTrackSettings {};
+struct ChangeTrackSettings {
+    double memory_s = 2.0;  ///< so long a thing that is not seen keeps its name; 0 to 60
+};
 
 /// One alternative for each method, in the order of kTrackingMethods.
 using MethodSettings = std::variant<SphereSettings, ChangeTrackSettings>;

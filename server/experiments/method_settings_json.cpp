@@ -48,8 +48,12 @@ MethodSettings read_sphere(ObjectReader& reader) {
     return settings;
 }
 
-MethodSettings read_change(ObjectReader&) {
-    return ChangeTrackSettings{};
+MethodSettings read_change(ObjectReader& reader) {
+    ChangeTrackSettings settings;
+    settings.memory_s = reader.number_or("memory_s", settings.memory_s);
+    if (settings.memory_s < 0.0 || settings.memory_s > 60.0)
+        reader.refuse("memory_s", "is not between 0 and 60", "give seconds, e.g. 2");
+    return settings;
 }
 
 struct MethodReader {
@@ -61,7 +65,7 @@ struct MethodReader {
 const std::array<MethodReader, kTrackingMethods.size()>& readers() {
     static const std::array<MethodReader, kTrackingMethods.size()> all{{
         {{"radius_m", "min_radius_m", "max_radius_m"}, read_sphere},
-        {{}, read_change},
+        {{"memory_s"}, read_change},
     }};
     return all;
 }

@@ -13,8 +13,10 @@ Figures measure_depth_cut() {
     const DisparityScale scale(scene.camera);
     std::vector<std::uint16_t> near(scene.frame.depth.size());
     DepthPass pass;
-    const double ms =
-        least_ms(50, [&] { pass = pass_nearer_than_wall(scene.frame.depth, scale, near).value(); });
+    const double ms = least_ms(50, [&] {
+        pass =
+            pass_nearer_than_wall(scene.frame.depth, scene.camera.depth.width, scale, near).value();
+    });
 
     // Between two counts, so that rounding to float cannot decide.
     const double limit_m = (pass.farthest + 0.5) * scene.camera.depth_unit_m;
@@ -43,7 +45,7 @@ Figures measure_depth_cut() {
          std::nullopt,
          ""},
         {"depth cut: where, wall at 3.2 m",
-         pass.cut_steps ? limit_m : std::nan(""),
+         pass.cut ? limit_m : std::nan(""),
          "m",
          std::nullopt,
          Better::lower,

@@ -52,7 +52,7 @@ Figures measure_organised_change() {
     for (std::uint64_t seed = 1; seed <= kReferenceFrames; ++seed)
         reference.learn(lab_scene(simulate::NoiseModel::kinect, -1.0, seed).frame.depth);
     ChangeLimits limits(before.camera, kThresholdSteps);
-    limits.rebuild(reference);
+    limits.rebuild(reference.view());
     ChangeSettings settings;
     settings.width = before.camera.depth.width;
     settings.height = before.camera.depth.height;
@@ -63,7 +63,7 @@ Figures measure_organised_change() {
     const Counts ours = judge(before, now, mask_of(runs, settings));
     const double ms = least_ms(50, [&] {
         find_changed(now.frame.depth, limits.reach(), settings, runs);
-        limits.update(reference, reference.follow(now.frame.depth));
+        limits.update(reference.view(), reference.follow(now.frame.depth));
     });
 
     const StockCloud stock_reference(before.seen), stock_now(now.seen);
