@@ -157,65 +157,97 @@ KINECTLAB_HOT_LOOP void fit_smooth(
     }
 }
 
-/// The plane through the neighbours that continue the pixel's surface.
-struct Window {
-    float n = 0, u = 0, v = 0, uu = 0, uv = 0, vv = 0, s = 0, su = 0, sv = 0;
+/// Which pixels of a window are looked at where it holds an edge: in a wide one every other,
+/// because the sensor correlates windows of pixels, so that neighbours tell little new.
+struct Taps {
+    int half, step;
+    explicit Taps(int half_window) : half(half_window), step(half_window >= 6 ? 2 : 1) {}
+    [[nodiscard]] int count() const { return (2 * half / step + 1) * (2 * half / step + 1); }
 };
 
-KINECTLAB_HOT_LOOP Window sum_window(const Inverse& inverse, int u, int v, int half, Jump jump) {
-    const Float8 lanes = {0, 1, 2, 3, 4, 5, 6, 7};
-    const float s0 = inverse.row(v)[u];
-    const float most = std::max(jump.least, jump.share * s0);
-    const auto reach = static_cast<float>(half);
-    Float8 n{}, mu{}, mv{}, muu{}, muv{}, mvv{}, ms{}, msu{}, msv{};
-    for (int dv = -half; dv <= half; ++dv) {
+/// Sums over the neighbours that continue each pixel's own surface, eight pixels side by side.
+struct Windows {
+    Float8 n{}, u{}, v{}, uu{}, uv{}, vv{}, s{}, su{}, sv{};
+};
+
+KINECTLAB_INLINE Windows
+sum_windows(const Inverse& inverse, int u, int v, Taps taps, const Float8& s0, const Float8& most) {
+    Windows sums;
+    for (int dv = -taps.half; dv <= taps.half; dv += taps.step) {
         const float* row = inverse.row(v + dv) + u;
-        const auto y = static_cast<float>(dv);
-        // A surface may also slope across the window: allow for it as for a jump, but in
-        // proportion.
-        for (int du = -half; du <= half; du += 8) {
-            const Float8 x = lanes + static_cast<float>(du);
-            const Float8 read = load8(row + du);
+        Float8 n{}, mu{}, muu{}, s{}, su{};
+        const auto add = [&](const Float8& read, float x) __attribute__((always_inline)) {
             const Float8 off = read - s0;
-            const Mask8 in = (abs8(off) <= most) & (read > 0.0F) & (x <= reach);
+            const Mask8 in = (abs8(off) <= most) & (read > 0.0F);
             const Float8 one = keep8(all8(1.0F), in);
-            const Float8 s = keep8(off, in);
-            const Float8 ox = x * one;
+            const Float8 kept = keep8(off, in);
             n += one;
-            mu += ox;
-            mv += one * y;
-            muu += ox * x;
-            muv += ox * y;
-            mvv += one * (y * y);
-            ms += s;
-            msu += s * x;
-            msv += s * y;
-        }
-    }
-    Window sums;
-    for (int lane = 0; lane < 8; ++lane) {
-        sums.n += n[lane], sums.u += mu[lane], sums.v += mv[lane];
-        sums.uu += muu[lane], sums.uv += muv[lane], sums.vv += mvv[lane];
-        sums.s += ms[lane], sums.su += msu[lane], sums.sv += msv[lane];
+            mu += one * x;
+            muu += one * (x * x);
+            s += kept;
+            su += kept * x;
+        };
+        for (int du = -taps.half; du <= taps.half; du += taps.step)
+            add(load8(row + du), static_cast<float>(du));
+        const auto y = static_cast<float>(dv);
+        sums.n += n;
+        sums.u += mu;
+        sums.v += n * y;
+        sums.uu += muu;
+        sums.uv += mu * y;
+        sums.vv += n * (y * y);
+        sums.s += s;
+        sums.su += su;
+        sums.sv += s * y;
     }
     return sums;
 }
 
-/// Solves the 3x3 normal equations about the neighbours' centre.
-bool slope_of(const Window& w, float needed, float& a, float& b, float& c) {
-    if (w.n < needed) return false;
-    const float inverse_n = 1.0F / w.n;
-    const float uu = w.uu - w.u * w.u * inverse_n;
-    const float uv = w.uv - w.u * w.v * inverse_n;
-    const float vv = w.vv - w.v * w.v * inverse_n;
-    const float su = w.su - w.s * w.u * inverse_n;
-    const float sv = w.sv - w.s * w.v * inverse_n;
-    const float determinant = uu * vv - uv * uv;
-    if (!(determinant > 1e-3F * uu * vv)) return false;
-    a = (su * vv - sv * uv) / determinant;
-    b = (sv * uu - su * uv) / determinant;
-    c = (w.s - a * w.u - b * w.v) * inverse_n;
-    return true;
+/// The pixels of a row that have no normal yet, each by its own neighbours: the 3x3 normal
+/// equations about the neighbours' centre.
+KINECTLAB_HOT_LOOP void fit_rest(
+    const Inverse& inverse, int v, int half, Jump jump, const RowOptics& optics, RowOut out
+) {
+    const Float8 lanes = {0, 1, 2, 3, 4, 5, 6, 7};
+    const Taps taps(half);
+    const float needed = std::max(3.0F, 0.25F * static_cast<float>(taps.count()));
+    for (int u = 0; u < inverse.width; u += 8) {
+        const Float8 s0 = load8(inverse.row(v) + u);
+        const Float8 fitted = load8(out.z + u);
+        const Mask8 open = (fitted != fitted) & (s0 > 0.0F);
+        int any = 0;
+        for (int lane = 0; lane < 8; ++lane)
+            any |= open[lane];
+        if (any == 0) continue;
+
+        const Float8 share = s0 * jump.share;
+        const Float8 most = choose8(share > jump.least, share, all8(jump.least));
+        const Windows w = sum_windows(inverse, u, v, taps, s0, most);
+        const Float8 inverse_n = 1.0F / w.n;
+        const Float8 uu = w.uu - w.u * w.u * inverse_n;
+        const Float8 uv = w.uv - w.u * w.v * inverse_n;
+        const Float8 vv = w.vv - w.v * w.v * inverse_n;
+        const Float8 su = w.su - w.s * w.u * inverse_n;
+        const Float8 sv = w.sv - w.s * w.v * inverse_n;
+        const Float8 determinant = uu * vv - uv * uv;
+        const Mask8 sound = (w.n >= needed) & (determinant > uu * vv * 1e-3F);
+        const Float8 a = (su * vv - sv * uv) / determinant;
+        const Float8 b = (sv * uu - su * uv) / determinant;
+        const Float8 c = s0 + (w.s - a * w.u - b * w.v) * inverse_n;
+
+        const Float8 x = a * optics.fx;
+        const Float8 y = b * optics.fy;
+        const Float8 at = lanes + static_cast<float>(u);
+        const Float8 z = c - a * (at - optics.cx) - y * optics.ray_y;
+        const Float8 squared = x * x + y * y + z * z;
+        Float8 root;
+        for (int lane = 0; lane < 8; ++lane)
+            root[lane] = std::sqrt(squared[lane]);
+        const Mask8 now = open & sound;
+        store8(out.x + u, choose8(now, -x / root, load8(out.x + u)));
+        store8(out.y + u, choose8(now, -y / root, load8(out.y + u)));
+        store8(out.z + u, choose8(now, -z / root, load8(out.z + u)));
+    }
 }
 
 class NormalFinder {
@@ -255,7 +287,7 @@ public:
                 static_cast<float>((v - camera_.cy) / camera_.fy)};
             add_rows(inverse_, edges_, v, half_, sums);
             fit_smooth(sums, image.width, half_, optics, out);
-            fit_rest(v, optics, out);
+            fit_rest(inverse_, v, half_, jump_, optics, out);
             const auto to = static_cast<std::ptrdiff_t>(v) * image.width;
             std::copy_n(out.x, width, image.x.begin() + to);
             std::copy_n(out.y, width, image.y.begin() + to);
@@ -265,24 +297,6 @@ public:
     }
 
 private:
-    void fit_rest(int v, const RowOptics& optics, RowOut out) const {
-        const int side = 2 * half_ + 1;
-        const float needed = std::max(3.0F, 0.25F * static_cast<float>(side * side));
-        const float* s = inverse_.row(v);
-        for (int u = 0; u < inverse_.width; ++u) {
-            if (!std::isnan(out.z[u]) || !(s[u] > 0.0F)) continue;
-            float a = 0, b = 0, c = 0;
-            if (!slope_of(sum_window(inverse_, u, v, half_, jump_), needed, a, b, c)) continue;
-            const float x = a * optics.fx;
-            const float y = b * optics.fy;
-            const float z = s[u] + c - a * (static_cast<float>(u) - optics.cx) - y * optics.ray_y;
-            const float scale = -1.0F / std::sqrt(x * x + y * y + z * z);
-            out.x[u] = x * scale;
-            out.y[u] = y * scale;
-            out.z[u] = z * scale;
-        }
-    }
-
     Pinhole camera_;
     int half_;
     Jump jump_;

@@ -8,7 +8,7 @@ namespace kinectlab {
 
 struct NormalSettings {
     /// The plane is fitted to (2 half_window + 1)² pixels, 1 to kMostHalfWindow.
-    int half_window = 5;
+    int half_window = 8;
     /// Readings belong to one surface if their inverse depths differ by no more than this, 1/m, or
     /// by max_jump_share of the inverse depth itself: eight steps of a Kinect's disparity.
     double max_jump_per_m = 8 * 2.85e-3;

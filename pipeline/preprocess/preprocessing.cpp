@@ -30,25 +30,22 @@ SceneView Preprocessing::scene() const {
     return median_rules_ ? median_->view() : reference_.view();
 }
 
-Result<void> Preprocessing::learn(const RgbdFrame& frame) {
-    const auto clean = cleaner_.clean(frame);
-    if (!clean) return tl::unexpected(clean.error());
+void Preprocessing::learn(const RgbdFrame& frame) {
     if (median_rules_) {
-        update_median(**clean);
+        update_median(frame);
     } else {
-        reference_.learn((*clean)->depth);
+        reference_.learn(frame.depth);
         scene_is_new_ = true;
     }
     ++learned_;
-    return {};
 }
 
-void Preprocessing::update_median(const RgbdFrame& clean) {
-    if (median_->add(clean.depth, clean.t)) {
+void Preprocessing::update_median(const RgbdFrame& frame) {
+    if (median_->add(frame.depth, frame.t)) {
         median_->update();
         scene_is_new_ = true;
     }
-    if (reference_method_ != ReferenceMethod::median || !median_->complete(clean.t)) return;
+    if (reference_method_ != ReferenceMethod::median || !median_->complete(frame.t)) return;
     reference_.assign(median_->view());
     median_rules_ = false;
 }
@@ -71,9 +68,9 @@ Result<std::span<const PixelList>> Preprocessing::moved(const RgbdFrame& clean) 
     return segmenter_.segment(clean.depth, limits_.trusted(), runs_);
 }
 
-void Preprocessing::follow(const RgbdFrame& clean) {
-    if (median_rules_) return update_median(clean);
-    const RowRange followed = reference_.follow(clean.depth);
+void Preprocessing::follow(const RgbdFrame& frame) {
+    if (median_rules_) return update_median(frame);
+    const RowRange followed = reference_.follow(frame.depth);
     limits_.update(reference_.view(), followed);
     // Voxels are made anew once the reference came by all of the picture.
     if (!voxels_ || ++followed_ < ReferenceScene::kStrips) return;

@@ -26,8 +26,9 @@ public:
     /// `settings` were checked.
     Preprocessing(const RgbdCamera& camera, const PreprocessSettings& settings);
 
-    /// Takes a frame into the reference.
-    [[nodiscard]] Result<void> learn(const RgbdFrame& frame);
+    /// Takes a frame into the reference, as it is: what cleaning removes now and then would be a
+    /// hole in the scene, and what shows in a hole counts as an object.
+    void learn(const RgbdFrame& frame);
 
     /// What is to be looked at instead of the frame (FrameCleaner::clean).
     [[nodiscard]] Result<const RgbdFrame*> clean(const RgbdFrame& frame) {
@@ -36,14 +37,14 @@ public:
     /// What moved in a cleaned frame, biggest first. Valid until the next call. Something must have
     /// been learned.
     [[nodiscard]] Result<std::span<const PixelList>> moved(const RgbdFrame& clean);
-    /// Lets the reference follow the scene.
-    void follow(const RgbdFrame& clean);
+    /// Lets the reference follow the scene; the frame as it came.
+    void follow(const RgbdFrame& frame);
 
     void reset();
     [[nodiscard]] std::size_t learned_frames() const { return learned_; }
 
 private:
-    void update_median(const RgbdFrame& clean);
+    void update_median(const RgbdFrame& frame);
     [[nodiscard]] SceneView scene() const;
     [[nodiscard]] Result<std::span<const std::uint16_t>> reach_of(const RgbdFrame& clean);
 

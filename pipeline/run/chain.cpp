@@ -82,7 +82,8 @@ Result<Chain> Chain::create(ChainSettings settings) {
 
 Result<void> Chain::learn(const RgbdFrame& frame) {
     if (auto ok = state_->check_size(frame); !ok) return ok;
-    return state_->preprocessing.learn(frame);
+    state_->preprocessing.learn(frame);
+    return {};
 }
 
 Result<std::span<const TrackSample>> Chain::track(const RgbdFrame& frame) {
@@ -108,7 +109,7 @@ Result<std::span<const TrackSample>> Chain::track(const RgbdFrame& frame) {
         return a.identity < b.identity;
     });
 
-    s.preprocessing.follow(**clean);
+    s.preprocessing.follow(frame);
     return std::span<const TrackSample>(s.samples);
 }
 

@@ -12,7 +12,7 @@
 namespace kinectlab::bench {
 namespace {
 
-constexpr double kStockSize_px = 11.0;  // as wide as our window
+constexpr double kStockSize_px = 17.0;  // as wide as our window
 
 struct AngleError {
     double mean_deg = 0.0;
