@@ -1,11 +1,15 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <variant>
 #include <vector>
+
+#include "pipeline/core/mesh.hpp"
 
 namespace kinectlab {
 
@@ -19,11 +23,20 @@ struct SphereSettings {
 /// Method "change": whatever moved.
 struct ChangeTrackSettings {};
 
+/// Method "surface_patch": a rigid thing of any shape, known by a model of its surface.
+struct SurfacePatchSettings {
+    std::string model;                         ///< the file it came from, for messages
+    double model_unit_m = 1.0;                 ///< metres for each unit of the file
+    std::uint32_t seed = 1;                    ///< of what recognition draws by lot
+    std::shared_ptr<const TriangleMesh> mesh;  ///< the file's content, in its unit
+    std::vector<std::string> warnings;         ///< what a person should know of it
+};
+
 /// One alternative for each method, in the order of kTrackingMethods.
-using MethodSettings = std::variant<SphereSettings, ChangeTrackSettings>;
+using MethodSettings = std::variant<SphereSettings, ChangeTrackSettings, SurfacePatchSettings>;
 
 inline constexpr std::array<std::string_view, std::variant_size_v<MethodSettings>> kTrackingMethods{
-    "sphere", "change"};
+    "sphere", "change", "surface_patch"};
 
 /// One object to track, as given in {"objects":[…]} or by an experiment. Plain values here: JSON is
 /// read by whoever has a file (server/experiments), the pipeline knows none.

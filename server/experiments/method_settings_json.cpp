@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "pipeline/core/nearest_name.hpp"
+#include "server/experiments/model_files.hpp"
 
 namespace kinectlab::experiments {
 namespace {
@@ -62,6 +63,7 @@ const std::array<MethodReader, kTrackingMethods.size()>& readers() {
     static const std::array<MethodReader, kTrackingMethods.size()> all{{
         {{"radius_m", "min_radius_m", "max_radius_m"}, read_sphere},
         {{}, read_change},
+        {{"model", "model_unit_m", "seed"}, read_surface_patch},
     }};
     return all;
 }
