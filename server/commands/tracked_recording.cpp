@@ -94,8 +94,9 @@ std::vector<ThingSamples> by_identity(const std::vector<TrackSample>& samples) {
 }  // namespace
 
 Result<TrackedRecording> track_recording(const std::filesystem::path& path, TrackingPlan plan) {
-    const RecordingOptions depth_alone{.with_colour = false};
-    auto source = open_recording(path, depth_alone);
+    const bool with_colour = std::any_of(plan.objects.begin(), plan.objects.end(), needs_colour);
+    const RecordingOptions options{.with_colour = with_colour};
+    auto source = open_recording(path, options);
     if (!source) return forward(source);
     TrackedRecording recording;
     recording.source = (*source)->info();
@@ -114,7 +115,7 @@ Result<TrackedRecording> track_recording(const std::filesystem::path& path, Trac
     recording.learned_frames = chain->learned_frames();
 
     source->reset();  // an .oni file has one player, which must start anew
-    auto again = open_recording(path, depth_alone);
+    auto again = open_recording(path, options);
     if (!again) return forward(again);
     if (auto tracked = track_all(**again, *chain, recording); !tracked) return forward(tracked);
     return recording;

@@ -3,6 +3,7 @@
 #include <cctype>
 
 #include "server/experiments/method_settings_json.hpp"
+#include "server/experiments/model_files.hpp"
 #include "server/experiments/preprocess_json.hpp"
 #include "server/experiments/strict_json.hpp"
 
@@ -91,10 +92,16 @@ Result<TrackingPlan> read_tracking_plan(const nlohmann::json& document) {
 }
 
 Result<TrackingPlan> load_tracking_plan(const std::filesystem::path& file) {
-    return read_json_file(file).and_then(read_tracking_plan).map_error([&](Error error) {
-        if (error.field != file.string()) error.field = file.string() + ": " + error.field;
-        return error;
-    });
+    const auto beside = [&](nlohmann::json document) {
+        return with_models_beside(file, std::move(document));
+    };
+    return read_json_file(file)
+        .map(beside)
+        .and_then(read_tracking_plan)
+        .map_error([&](Error error) {
+            if (error.field != file.string()) error.field = file.string() + ": " + error.field;
+            return error;
+        });
 }
 
 }  // namespace kinectlab::experiments
