@@ -4,7 +4,9 @@
 
 #include "pipeline/track/change.hpp"
 #include "pipeline/track/colour.hpp"
+#include "pipeline/track/sift3d.hpp"
 #include "pipeline/track/sphere.hpp"
+#include "pipeline/track/texture.hpp"
 
 namespace kinectlab {
 namespace {
@@ -79,6 +81,8 @@ Result<std::vector<std::unique_ptr<Tracker>>> make_trackers(
     add(own<SphereSettings>(objects), make_sphere_tracker);
     add(own<ChangeTrackSettings>(objects), make_change_tracker);
     add(own<ColourSettings>(objects), make_colour_tracker);
+    add(own<TextureSettings>(objects), make_texture_tracker);
+    add(own<Sift3dTrackSettings>(objects), make_sift3d_tracker);
     return trackers;
 }
 
