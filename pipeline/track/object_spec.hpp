@@ -1,11 +1,15 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <variant>
 #include <vector>
+
+#include "pipeline/core/mesh.hpp"
 
 namespace kinectlab {
 
@@ -18,6 +22,15 @@ struct SphereSettings {
 
 /// Method "change": whatever moved.
 struct ChangeTrackSettings {};
+
+/// Method "surface_patch": a rigid thing of any shape, known by a model of its surface.
+struct SurfacePatchSettings {
+    std::string model;                         ///< the file it came from, for messages
+    double model_unit_m = 1.0;                 ///< metres for each unit of the file
+    std::uint32_t seed = 1;                    ///< of what recognition draws by lot
+    std::shared_ptr<const TriangleMesh> mesh;  ///< the file's content, in its unit
+    std::vector<std::string> warnings;         ///< what a person should know of it
+};
 
 /// A box in the colour picture, px; a click is a box of one pixel.
 struct PictureBox {
@@ -70,12 +83,13 @@ struct Sift3dTrackSettings {
 using MethodSettings = std::variant<
     SphereSettings,
     ChangeTrackSettings,
+    SurfacePatchSettings,
     ColourSettings,
     TextureSettings,
     Sift3dTrackSettings>;
 
 inline constexpr std::array<std::string_view, std::variant_size_v<MethodSettings>> kTrackingMethods{
-    "sphere", "change", "colour", "texture", "sift3d"};
+    "sphere", "change", "surface_patch", "colour", "texture", "sift3d"};
 
 /// One object to track, as given in {"objects":[…]} or by an experiment. Plain values here: JSON is
 /// read by whoever has a file (server/experiments), the pipeline knows none.

@@ -6,6 +6,7 @@
 #include "pipeline/track/colour.hpp"
 #include "pipeline/track/sift3d.hpp"
 #include "pipeline/track/sphere.hpp"
+#include "pipeline/track/surface_patch.hpp"
 #include "pipeline/track/texture.hpp"
 
 namespace kinectlab {
@@ -75,14 +76,23 @@ Result<std::vector<std::unique_ptr<Tracker>>> make_trackers(
     if (auto ok = check_names(objects); !ok) return tl::unexpected(ok.error());
     if (auto ok = check_settings(camera, objects); !ok) return tl::unexpected(ok.error());
     std::vector<std::unique_ptr<Tracker>> trackers;
+    Result<void> all_made;
     const auto add = [&](auto own, auto make) {
-        if (!own.empty()) trackers.push_back(make(camera, std::move(own)));
+        if (own.empty() || !all_made) return;
+        // A method that needs a model may find fault with it.
+        Result<std::unique_ptr<Tracker>> made = make(camera, std::move(own));
+        if (made)
+            trackers.push_back(std::move(*made));
+        else
+            all_made = tl::unexpected(made.error());
     };
     add(own<SphereSettings>(objects), make_sphere_tracker);
     add(own<ChangeTrackSettings>(objects), make_change_tracker);
+    add(own<SurfacePatchSettings>(objects), make_surface_patch_tracker);
     add(own<ColourSettings>(objects), make_colour_tracker);
     add(own<TextureSettings>(objects), make_texture_tracker);
     add(own<Sift3dTrackSettings>(objects), make_sift3d_tracker);
+    if (!all_made) return tl::unexpected(all_made.error());
     return trackers;
 }
 

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "pipeline/core/nearest_name.hpp"
+#include "server/experiments/model_files.hpp"
 
 namespace kinectlab::experiments {
 namespace {
@@ -152,6 +153,7 @@ const std::array<MethodReader, kTrackingMethods.size()>& readers() {
     static const std::array<MethodReader, kTrackingMethods.size()> all{{
         {{"radius_m", "min_radius_m", "max_radius_m"}, read_sphere},
         {{}, read_change},
+        {{"model", "model_unit_m", "seed"}, read_surface_patch},
         {{"hue_deg", "saturation", "value", "box", "click", "learn_at_s"}, read_colour},
         {{"box", "learn_at_s", "spots", "fewest_spots"}, read_texture},
         {{"box", "learn_at_s", "scale_m", "fewest_spots"}, read_sift3d},
