@@ -3,6 +3,7 @@
 #include <set>
 
 #include "pipeline/track/change.hpp"
+#include "pipeline/track/shape_tracker.hpp"
 #include "pipeline/track/sphere.hpp"
 
 namespace kinectlab {
@@ -68,7 +69,10 @@ Result<std::vector<std::unique_ptr<Tracker>>> make_trackers(
     const auto add = [&](auto own, auto make) {
         if (!own.empty()) trackers.push_back(make(camera, std::move(own)));
     };
-    add(own<SphereSettings>(objects), make_sphere_tracker);
+    auto balls = own<SphereSettings>(objects);
+    std::erase_if(balls, [](const auto& ball) { return !is_for_sphere_tracker(ball.settings); });
+    add(std::move(balls), make_sphere_tracker);
+    add(shape_targets(objects), make_shape_tracker);  // one for all, which searches a scene once
     add(own<ChangeTrackSettings>(objects), make_change_tracker);
     return trackers;
 }
