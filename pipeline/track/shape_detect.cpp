@@ -12,9 +12,9 @@ namespace {
 
 constexpr std::size_t kPoints = 160;  // oriented points of a segment
 constexpr int kTries = 256;
-constexpr int kRivalTries = 64;
+constexpr int kRivalTries = 48;
 constexpr std::size_t kGuesses = 3;
-constexpr std::size_t kComparePixels = 2048;
+constexpr std::size_t kComparePixels = 1024;
 constexpr double kSimplerCost = 1.15;     // what a simpler kind may be worse and still explain it
 constexpr double kMinInlierShare = 0.35;  // of the segment: lids, strings and hands belong to it
 constexpr double kMaxRmsSigmas = 3.0;
@@ -78,13 +78,7 @@ double SegmentShapes::best_cost(
     return least;
 }
 
-bool SegmentShapes::is_its_kind(
-    const DisparityImage& image, std::span<const std::uint32_t> pixels, const ShapeFit& fit
-) {
-    compared_.clear();
-    const std::size_t stride = 1 + pixels.size() / kComparePixels;
-    for (std::size_t i = 0; i < pixels.size(); i += stride)
-        compared_.push_back(pixels[i]);
+bool SegmentShapes::is_its_kind(const DisparityImage& image, const ShapeFit& fit) {
     const auto own = rival_.fit(image, compared_, fit.shape, true);
     if (!own) return false;
     for (const auto kind :
@@ -104,15 +98,22 @@ std::optional<ShapeFit> SegmentShapes::in_segment(
     sample(image, pixels);
     guess(target, kGuesses);
     const bool known = target.limits.known.has_value();
+    // Guesses and rivals are tried on some of the pixels only.
+    compared_.clear();
+    const std::size_t stride = 1 + pixels.size() / kComparePixels;
+    for (std::size_t i = 0; i < pixels.size(); i += stride)
+        compared_.push_back(pixels[i]);
     std::optional<ShapeFit> best;
     for (const auto& guess : guesses_) {
-        auto fit = fitter_.fit(image, pixels, guess.shape, known);
+        auto fit = rival_.fit(image, compared_, guess.shape, known);
         if (!fit || !is_sound(*fit, target) || fit->quality.inlier_share < kMinInlierShare)
             continue;
         if (!best || fit->cost < best->cost) best = std::move(fit);
         if (best->cost < 0.12) break;  // noise alone costs 0.08
     }
-    if (best && !is_its_kind(image, pixels, *best)) best.reset();
+    if (!best || !is_its_kind(image, *best)) return std::nullopt;
+    best = fitter_.fit(image, pixels, best->shape, known);
+    if (best && !is_sound(*best, target)) best.reset();
     return best;
 }
 

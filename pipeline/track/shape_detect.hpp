@@ -42,9 +42,7 @@ private:
     void sample(const DisparityImage& image, std::span<const std::uint32_t> pixels);
     void guess(const ShapeTarget& target, std::size_t most);
     [[nodiscard]] bool is_sound(const ShapeFit& fit, const ShapeTarget& target) const;
-    [[nodiscard]] bool is_its_kind(
-        const DisparityImage& image, std::span<const std::uint32_t> pixels, const ShapeFit& fit
-    );
+    [[nodiscard]] bool is_its_kind(const DisparityImage& image, const ShapeFit& fit);
     [[nodiscard]] double best_cost(
         const DisparityImage& image, std::span<const std::uint32_t> pixels, ShapeKind kind
     );
