@@ -14,9 +14,10 @@ constexpr std::size_t kPoints = 160;  // oriented points of a segment
 constexpr int kTries = 256;
 constexpr int kRivalTries = 48;
 constexpr std::size_t kGuesses = 3;
-constexpr std::size_t kComparePixels = 1024;
+constexpr std::size_t kComparePixels = 512;
 constexpr double kSimplerCost = 1.15;     // what a simpler kind may be worse and still explain it
 constexpr double kMinInlierShare = 0.35;  // of the segment: lids, strings and hands belong to it
+constexpr double kPlentyOfInliers = 0.7;  // no further guess is tried
 constexpr double kMaxRmsSigmas = 3.0;
 constexpr double kMaxSizeShareU = 0.15;  // a size less sure than this is no measurement
 constexpr int kFewestPoints = 60;
@@ -109,7 +110,7 @@ std::optional<ShapeFit> SegmentShapes::in_segment(
         if (!fit || !is_sound(*fit, target) || fit->quality.inlier_share < kMinInlierShare)
             continue;
         if (!best || fit->cost < best->cost) best = std::move(fit);
-        if (best->cost < 0.12) break;  // noise alone costs 0.08
+        if (best->quality.inlier_share > kPlentyOfInliers) break;
     }
     if (!best || !is_its_kind(image, *best)) return std::nullopt;
     best = fitter_.fit(image, pixels, best->shape, known);

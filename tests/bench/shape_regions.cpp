@@ -45,15 +45,20 @@ struct Region {
     double times_bound;
 };
 
-/// The sphere's own tracker, with its radius free.
+/// The sphere's own tracker, with its radius known.
 std::optional<Shape> find_sphere(
-    SphereFitter& fitter, const RgbdCamera& camera, const RgbdFrame& frame, MovedPixels pixels
+    SphereFitter& fitter,
+    const RgbdCamera& camera,
+    const RgbdFrame& frame,
+    MovedPixels pixels,
+    double radius_m
 ) {
     const DisparityScale scale(camera);
     const SurfaceSample sample(frame.depth, pixels, camera.depth, scale);
-    const auto guess = sphere_candidate(sample.points(), SphereSettings{}, scale);
+    const auto guess =
+        sphere_candidate(sample.points(), SphereSettings{.radius_m = radius_m}, scale);
     if (!guess) return std::nullopt;
-    const auto fit = fitter.fit(frame.depth, *guess, false);
+    const auto fit = fitter.fit(frame.depth, *guess, true);
     if (!fit) return std::nullopt;
     return Shape{
         ShapeKind::sphere, fit->sphere.centre_cam, Eigen::Vector3d::UnitZ(), fit->sphere.radius};
@@ -76,7 +81,7 @@ void measure(const Region& region, Figures& figures) {
         const double start = thread_seconds();
         std::optional<Shape> found;
         if (region.kind == ShapeKind::sphere) {
-            found = find_sphere(sphere, room.camera, frame, pixels);
+            found = find_sphere(sphere, room.camera, frame, pixels, region.solid.radius);
         } else {
             const auto width = static_cast<std::uint32_t>(room.camera.depth.width);
             image.load(
