@@ -2,6 +2,8 @@
 
 #ifdef KINECTLAB_CGAL
 
+#include <tuple>
+
 #include <CGAL/Shape_detection/Efficient_RANSAC.h>
 #include <CGAL/Simple_cartesian.h>
 #include <CGAL/property_map.h>
@@ -11,14 +13,14 @@
 namespace kinectlab::bench {
 namespace {
 
-using Kernel = CGAL::Simple_cartesian<float>;
-using Oriented = std::pair<Kernel::Point_3, Kernel::Vector_3>;
+using Kernel = CGAL::Simple_cartesian<double>;
+using Oriented = std::tuple<Kernel::Point_3, Kernel::Vector_3, std::uint32_t>;  // and its pixel
 using Points = std::vector<Oriented>;
 using Traits = CGAL::Shape_detection::Efficient_RANSAC_traits<
     Kernel,
     Points,
-    CGAL::First_of_pair_property_map<Oriented>,
-    CGAL::Second_of_pair_property_map<Oriented>>;
+    CGAL::Nth_of_tuple_property_map<0, Oriented>,
+    CGAL::Nth_of_tuple_property_map<1, Oriented>>;
 using Ransac = CGAL::Shape_detection::Efficient_RANSAC<Traits>;
 
 template <class V>
@@ -57,8 +59,10 @@ std::optional<StockScene> stock_scene(const SurfacePoints& points) {
     Points cloud;
     cloud.reserve(points.size);
     for (std::size_t i = 0; i < points.size; ++i)
-        cloud.push_back(
-            {{points.px[i], points.py[i], points.pz[i]}, {points.nx[i], points.ny[i], points.nz[i]}}
+        cloud.emplace_back(
+            Kernel::Point_3(points.px[i], points.py[i], points.pz[i]),
+            Kernel::Vector_3(points.nx[i], points.ny[i], points.nz[i]),
+            points.pixel[i]
         );
     StockScene scene;
     const double start = thread_seconds();
@@ -69,11 +73,11 @@ std::optional<StockScene> stock_scene(const SurfacePoints& points) {
     ransac.add_shape_factory<CGAL::Shape_detection::Cylinder<Traits>>();
     ransac.add_shape_factory<CGAL::Shape_detection::Cone<Traits>>();
     Ransac::Parameters parameters;
-    parameters.probability = 0.01F;
+    parameters.probability = 0.01;
     parameters.min_points = 500;
-    parameters.epsilon = 0.01F;
-    parameters.cluster_epsilon = 0.02F;
-    parameters.normal_threshold = 0.906F;
+    parameters.epsilon = 0.01;
+    parameters.cluster_epsilon = 0.02;
+    parameters.normal_threshold = 0.906;
     ransac.detect(parameters);
     scene.ms = 1e3 * (thread_seconds() - start);
     for (const auto& found : ransac.shapes()) {
@@ -81,7 +85,7 @@ std::optional<StockScene> stock_scene(const SurfacePoints& points) {
         if (!shape) continue;
         StockScene::Found one{*shape, {}};
         for (const auto i : found->indices_of_assigned_points())
-            one.pixels.push_back(points.pixel[i]);
+            one.pixels.push_back(std::get<2>(cloud[i]));  // CGAL puts its input in another order
         scene.shapes.push_back(std::move(one));
     }
     return scene;
