@@ -157,8 +157,10 @@ Result<std::vector<std::uint8_t>> bytes_of_ascii(
 
 }  // namespace
 
-Result<PcdCloud> parse_pcd(std::span<const std::uint8_t> file, const std::string& name) {
-    const auto header = parse_pcd_header(file, name);
+Result<PcdCloud> parse_pcd(
+    std::span<const std::uint8_t> file, const std::string& name, PcdShape shape
+) {
+    const auto header = parse_pcd_header(file, name, shape);
     if (!header) return tl::unexpected<Error>(header.error());
     const auto truncated = [&] {
         return fail(

@@ -33,17 +33,24 @@ struct PcdHeader {
     std::size_t point_size = 0;   ///< bytes of all fields of one point
 };
 
+/// A frame is organised; a model may come as a mere list of points (height 1).
+enum class PcdShape { organised, any };
+
 /// A reader of our own, because PCL's trusts the sizes that a file claims and brings VTK along.
-/// Refuses clouds that are not organised (height 1), above 4096 x 4096, or without x, y and z.
+/// Refuses clouds of another shape, organised ones above 4096 x 4096, and those without x, y and z.
 /// `name` stands in errors.
 [[nodiscard]] Result<PcdHeader> parse_pcd_header(
-    std::span<const std::uint8_t> file, const std::string& name
+    std::span<const std::uint8_t> file,
+    const std::string& name,
+    PcdShape shape = PcdShape::organised
 );
 
 /// Any order of fields, further fields are passed over; ascii, binary and binary_compressed.
 /// Truncated data and numbers that are none are errors.
 [[nodiscard]] Result<PcdCloud> parse_pcd(
-    std::span<const std::uint8_t> file, const std::string& name
+    std::span<const std::uint8_t> file,
+    const std::string& name,
+    PcdShape shape = PcdShape::organised
 );
 
 }  // namespace kinectlab

@@ -80,16 +80,17 @@ bool take_line(const Words& words, PcdHeader& header) {
     return key == "VERSION" || key == "VIEWPOINT" || key == "POINTS";
 }
 
-Result<PcdHeader> check(PcdHeader header, const std::string& name) {
+Result<PcdHeader> check(PcdHeader header, const std::string& name, PcdShape shape) {
     const auto bad = [&](std::string message, std::string cure) {
         return fail(ErrorCode::bad_data, name, std::move(message), std::move(cure));
     };
     if (header.width == 0 || header.height == 0)
         return bad("has no WIDTH or no HEIGHT", "give both in the header");
     const std::string size = std::to_string(header.width) + "x" + std::to_string(header.height);
-    if (header.height == 1)
+    const bool is_list = header.height == 1;
+    if (is_list && shape == PcdShape::organised)
         return bad("is not organised: " + size, "give a cloud as the sensor took it, e.g. 640x480");
-    if (header.width > kMaxSide || header.height > kMaxSide)
+    if (!is_list && (header.width > kMaxSide || header.height > kMaxSide))
         return bad("is " + size, "give at most 4096x4096");
     for (const auto& field : header.fields) {
         const bool power = field.size == 1 || field.size == 2 || field.size == 4 || field.size == 8;
@@ -122,7 +123,9 @@ Result<PcdHeader> check(PcdHeader header, const std::string& name) {
 
 }  // namespace
 
-Result<PcdHeader> parse_pcd_header(std::span<const std::uint8_t> file, const std::string& name) {
+Result<PcdHeader> parse_pcd_header(
+    std::span<const std::uint8_t> file, const std::string& name, PcdShape shape
+) {
     PcdHeader header;
     const auto limit = file.first(std::min(file.size(), kMaxHeader));
     std::size_t start = 0;
@@ -148,7 +151,7 @@ Result<PcdHeader> parse_pcd_header(std::span<const std::uint8_t> file, const std
         }
         if (words[0] != "DATA") continue;
         header.data_offset = start;
-        return check(std::move(header), name);
+        return check(std::move(header), name, shape);
     }
     return fail(
         ErrorCode::bad_data,

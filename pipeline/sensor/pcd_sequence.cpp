@@ -68,6 +68,23 @@ std::uint16_t to_counts(float z) {
                                               : std::uint16_t{0};  // NaN: 0
 }
 
+// PCL's viewers have y up and z backwards: a frame that lies behind the camera as a whole was taken
+// so, and is turned by half a turn about x.
+void face_forward(PcdCloud& cloud) {
+    const auto is_before = [](float z) {
+        return z > 0.0F;
+    };
+    const auto is_behind = [](float z) {
+        return z < 0.0F;
+    };
+    if (std::any_of(cloud.z.begin(), cloud.z.end(), is_before) ||
+        std::none_of(cloud.z.begin(), cloud.z.end(), is_behind))
+        return;
+    for (auto* axis : {&cloud.y, &cloud.z})
+        for (float& value : *axis)
+            value = -value;
+}
+
 // Share of the points in front of the camera that do not lie on the rays of their pixels.
 double share_off_rays(const PcdCloud& cloud, const Pinhole& camera) {
     std::size_t seen = 0;
@@ -102,6 +119,7 @@ public:
             return tl::unexpected<Error>(read.error());
         auto cloud = parse_pcd(bytes_, name);
         if (!cloud) return tl::unexpected<Error>(cloud.error());
+        face_forward(*cloud);
         if (auto fits = check(*cloud, name); !fits) return tl::unexpected<Error>(fits.error());
         frame.depth.resize(cloud->z.size());
         std::transform(cloud->z.begin(), cloud->z.end(), frame.depth.begin(), to_counts);

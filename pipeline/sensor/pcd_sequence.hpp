@@ -11,7 +11,9 @@ namespace kinectlab {
 /// A PCD file has neither a camera nor a time: the camera is camera.json's beside the file or
 /// 640x480, 525, 525, 319.5, 239.5; the frames are taken to be 1/30 s apart from time 0. A cloud
 /// whose points do not lie on that camera's rays is refused. Depth counts are 0.2 mm, which reaches
-/// to 13.1 m; NaN and points behind the camera or beyond that become 0.
+/// to 13.1 m; NaN and points behind the camera or beyond that become 0. A frame all of whose points
+/// lie behind the camera has y up and z backwards, as PCL's viewers write it, and is turned about
+/// x.
 [[nodiscard]] Result<std::unique_ptr<FrameSource>> open_pcd_sequence(
     const std::filesystem::path& path
 );

@@ -3,8 +3,10 @@
 #include <set>
 
 #include "pipeline/track/change.hpp"
+#include "pipeline/track/colour.hpp"
 #include "pipeline/track/shape_tracker.hpp"
 #include "pipeline/track/sphere.hpp"
+#include "pipeline/track/surface_patch.hpp"
 
 namespace kinectlab {
 namespace {
@@ -38,10 +40,17 @@ Result<void> check_names(std::span<const ObjectSpec> objects) {
     return {};
 }
 
-Result<void> check_settings(std::span<const ObjectSpec> objects) {
+/// A method whose settings mean places in the picture is asked with the camera too.
+Result<void> check_settings(const RgbdCamera& camera, std::span<const ObjectSpec> objects) {
     for (std::size_t i = 0; i < objects.size(); ++i) {
         const auto checked = std::visit(
-            [&](const auto& settings) { return check(settings, path_of(i)); }, objects[i].settings
+            [&](const auto& settings) {
+                if constexpr (requires { check(settings, camera, path_of(i)); })
+                    return check(settings, camera, path_of(i));
+                else
+                    return check(settings, path_of(i));
+            },
+            objects[i].settings
         );
         if (!checked) return checked;
     }
@@ -64,16 +73,26 @@ Result<std::vector<std::unique_ptr<Tracker>>> make_trackers(
     const RgbdCamera& camera, std::span<const ObjectSpec> objects
 ) {
     if (auto ok = check_names(objects); !ok) return tl::unexpected(ok.error());
-    if (auto ok = check_settings(objects); !ok) return tl::unexpected(ok.error());
+    if (auto ok = check_settings(camera, objects); !ok) return tl::unexpected(ok.error());
     std::vector<std::unique_ptr<Tracker>> trackers;
+    Result<void> all_made;
     const auto add = [&](auto own, auto make) {
-        if (!own.empty()) trackers.push_back(make(camera, std::move(own)));
+        if (own.empty() || !all_made) return;
+        // A method that needs a model may find fault with it.
+        Result<std::unique_ptr<Tracker>> made = make(camera, std::move(own));
+        if (made)
+            trackers.push_back(std::move(*made));
+        else
+            all_made = tl::unexpected(made.error());
     };
     auto balls = own<SphereSettings>(objects);
     std::erase_if(balls, [](const auto& ball) { return !is_for_sphere_tracker(ball.settings); });
     add(std::move(balls), make_sphere_tracker);
     add(shape_targets(objects), make_shape_tracker);  // one for all, which searches a scene once
     add(own<ChangeTrackSettings>(objects), make_change_tracker);
+    add(own<SurfacePatchSettings>(objects), make_surface_patch_tracker);
+    add(own<ColourSettings>(objects), make_colour_tracker);
+    if (!all_made) return tl::unexpected(all_made.error());
     return trackers;
 }
 

@@ -10,6 +10,7 @@
 #include "server/commands/pose_table.hpp"
 #include "server/commands/tracked_recording.hpp"
 #include "server/config/version.hpp"
+#include "server/experiments/model_files.hpp"
 #include "server/experiments/objects_json.hpp"
 #include "server/experiments/poses_csv.hpp"
 #include "server/experiments/result_json.hpp"
@@ -101,6 +102,8 @@ int track(int argc, char** argv) {
     if (const auto status = parse(argc, argv, arguments)) return *status;
     auto objects = experiments::load_objects(arguments.objects);
     if (!objects) return report_usage(objects.error());
+    for (const auto& warning : experiments::warnings_of(*objects))
+        std::fprintf(stderr, "warning: %s\n", warning.c_str());
     const auto recording = track_recording(arguments.recording, std::move(*objects));
     if (!recording) return report(recording.error());
 

@@ -4,6 +4,7 @@
 
 #include "pipeline/core/nearest_name.hpp"
 #include "server/experiments/definition.hpp"
+#include "server/experiments/model_files.hpp"
 #include "server/experiments/objects_json.hpp"
 #include "server/experiments/strict_json.hpp"
 
@@ -72,7 +73,10 @@ Result<ExperimentObject> read_experiment_object(
 }
 
 Result<Definition> load_file(const std::filesystem::path& file) {
-    return read_json_file(file).and_then(read_definition).map_error([&](Error error) {
+    const auto beside = [&](json document) {
+        return with_models_beside(file, std::move(document));
+    };
+    return read_json_file(file).map(beside).and_then(read_definition).map_error([&](Error error) {
         if (error.field != file.string()) error.field = file.string() + ": " + error.field;
         return error;
     });

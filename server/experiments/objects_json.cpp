@@ -3,6 +3,7 @@
 #include <cctype>
 
 #include "server/experiments/method_settings_json.hpp"
+#include "server/experiments/model_files.hpp"
 #include "server/experiments/strict_json.hpp"
 
 namespace kinectlab::experiments {
@@ -84,7 +85,10 @@ Result<std::vector<ObjectSpec>> read_objects(const nlohmann::json& document) {
 }
 
 Result<std::vector<ObjectSpec>> load_objects(const std::filesystem::path& file) {
-    return read_json_file(file).and_then(read_objects).map_error([&](Error error) {
+    const auto beside = [&](nlohmann::json document) {
+        return with_models_beside(file, std::move(document));
+    };
+    return read_json_file(file).map(beside).and_then(read_objects).map_error([&](Error error) {
         if (error.field != file.string()) error.field = file.string() + ": " + error.field;
         return error;
     });

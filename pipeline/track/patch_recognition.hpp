@@ -1,0 +1,70 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <random>
+#include <span>
+
+#include "pipeline/track/model_fit.hpp"
+#include "pipeline/track/patch_table.hpp"
+
+namespace kinectlab {
+
+/// How sure a fit must be to be the object.
+struct Acceptance {
+    double least_seen = 0.5;      ///< of the visible surface: half of it may be hidden
+    double least_inliers = 0.8;   ///< of the readings on it or behind it
+    double least_outline = 0.35;  ///< of the outline, where the model has one
+    double most_rms_sigmas = 3.0;
+};
+
+[[nodiscard]] bool is_accepted(
+    const ModelFit& fit,
+    const ObjectModel& model,
+    const RgbdCamera& camera,
+    const Acceptance& limits
+);
+
+/// Finds an object anywhere in a picture. Each of the picture's patches proposes, for the model's
+/// patches that the table gives it, the poses that lay one keypoint, its normal and its direction
+/// of least bending upon the other's (two, the direction has no sign); poses are checked on a
+/// growing number of the view's points against the readings, the best are laid upon the picture by
+/// ModelFitter, and the best of those is taken if it is accepted.
+/// The same seed finds the same. Not thread-safe.
+class PatchRecogniser {
+public:
+    PatchRecogniser(
+        const RgbdCamera& camera, std::shared_ptr<const ObjectModel> model, std::uint32_t seed = 1
+    );
+
+    [[nodiscard]] std::optional<ModelFit> find(std::span<const std::uint16_t> depth);
+
+    /// Patches of the model in its table; an object without any, such as a ball, is never found.
+    [[nodiscard]] std::size_t model_patches() const { return table_.size(); }
+
+private:
+    struct Proposal {
+        Eigen::Isometry3f T_cam_obj;
+        float score;
+        std::uint32_t view;
+    };
+
+    void propose(const SurfacePatch& patch);
+    void consider(const SurfacePatch& patch, const ModelPatch& match);
+    [[nodiscard]] float score(const Eigen::Isometry3f& T, const std::vector<ViewPoint>& points)
+        const;
+    [[nodiscard]] std::vector<Eigen::Isometry3d> distinct_best() const;
+    [[nodiscard]] double merit(const ModelFit& fit) const;
+
+    RgbdCamera camera_;
+    std::shared_ptr<const ObjectModel> model_;
+    PatchSettings settings_;
+    std::mt19937 random_;
+    PatchTable table_;
+    ModelFitter sketch_, fitter_;
+    std::vector<float> z_;  // m, of the picture
+    std::vector<Proposal> proposals_;
+};
+
+}  // namespace kinectlab

@@ -1,0 +1,217 @@
+#include "pipeline/track/surface_patch.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/Eigenvalues>
+
+#include "pipeline/track/model_fit.hpp"
+#include "pipeline/track/patch_recognition.hpp"
+
+namespace kinectlab {
+namespace {
+
+constexpr TimeNs kMemory = kNsPerSecond / 2;  // a place older than this says nothing
+constexpr double kOrientationSigma = 0.2;     // rad: less sure than this is not seen
+
+/// What keeps an object that was seen a moment ago: less than it takes to recognise one.
+constexpr Acceptance kFollowed{0.25, 0.65, 0.2, 4.0};
+
+struct Target {
+    TrackedObject<SurfacePatchSettings> object;
+    std::shared_ptr<const ObjectModel> model;
+    std::unique_ptr<PatchRecogniser> recogniser;
+    std::optional<ModelFit> last;
+    TimeNs seen_at = 0;
+    Eigen::Vector3d velocity = Eigen::Vector3d::Zero();  ///< m/s
+    Eigen::Vector3d turning = Eigen::Vector3d::Zero();   ///< rad/s, camera frame
+};
+
+bool shows_orientation(const Matrix6d& covariance) {
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solved(
+        covariance.bottomRightCorner<3, 3>(), Eigen::EigenvaluesOnly
+    );
+    return solved.eigenvalues()[2] < kOrientationSigma * kOrientationSigma;
+}
+
+Eigen::Isometry3d predicted(const Target& target, TimeNs t) {
+    const double dt = static_cast<double>(t - target.seen_at) / static_cast<double>(kNsPerSecond);
+    Eigen::Isometry3d T = target.last->T_cam_obj;
+    const double angle = target.turning.norm() * dt;
+    if (angle > 1e-9)
+        T.linear() = Eigen::AngleAxisd(angle, target.turning.normalized()) * T.linear();
+    T.translation() += target.velocity * dt;
+    return T;
+}
+
+void remember(Target& target, const ModelFit& fit, TimeNs t) {
+    target.velocity.setZero();
+    target.turning.setZero();
+    const double dt = static_cast<double>(t - target.seen_at) / static_cast<double>(kNsPerSecond);
+    if (target.last && dt > 0.0) {
+        const auto& before = target.last->T_cam_obj;
+        target.velocity = (fit.T_cam_obj.translation() - before.translation()) / dt;
+        const Eigen::AngleAxisd turned(fit.T_cam_obj.linear() * before.linear().transpose());
+        // What is not seen must not go on turning by itself.
+        if (shows_orientation(fit.covariance)) target.turning = turned.angle() / dt * turned.axis();
+    }
+    target.last = fit;
+    target.seen_at = t;
+}
+
+/// From the model's centre to the origin of its own frame, p = c - R centre_obj.
+TrackSample sample_of(const Target& target, const ModelFit& fit, TimeNs t) {
+    TrackSample sample;
+    sample.t = t;
+    sample.object = target.object.index;
+    sample.status = TrackStatus::tracked;
+    const Eigen::Matrix3d& R = fit.T_cam_obj.linear();
+    const Eigen::Vector3d arm = R * target.model->centre_obj;
+    sample.p_cam = fit.T_cam_obj.translation() - arm;
+    sample.has_orientation = shows_orientation(fit.covariance);
+    if (sample.has_orientation) sample.q_cam_obj = Eigen::Quaterniond(R).normalized();
+    Matrix6d move = Matrix6d::Identity();
+    move.topRightCorner<3, 3>() << 0.0, -arm.z(), arm.y(), arm.z(), 0.0, -arm.x(), -arm.y(),
+        arm.x(), 0.0;
+    sample.covariance = move * fit.covariance * move.transpose();
+    sample.quality = fit.quality;
+    return sample;
+}
+
+class SurfacePatchTracker : public Tracker {
+public:
+    SurfacePatchTracker(const RgbdCamera& camera, std::vector<Target> targets)
+        : camera_(camera),
+          targets_(std::move(targets)),
+          fitter_(camera),
+          viewer_(camera.depth, {0, 0, 1'000'000}) {}
+
+    void track(
+        const RgbdFrame& frame, std::span<const MovedPixels>, std::vector<TrackSample>& samples
+    ) override {
+        fits_.assign(targets_.size(), std::nullopt);
+        for (std::size_t i = 0; i < targets_.size(); ++i)
+            fits_[i] = follow(targets_[i], frame);
+        recognise_lost(frame);
+        for (std::size_t i = 0; i < targets_.size(); ++i) {
+            if (fits_[i]) {
+                remember(targets_[i], *fits_[i], frame.t);
+                samples.push_back(sample_of(targets_[i], *fits_[i], frame.t));
+                continue;
+            }
+            TrackSample lost;
+            lost.t = frame.t;
+            lost.object = targets_[i].object.index;
+            samples.push_back(lost);
+        }
+    }
+
+    void reset() override {
+        for (auto& target : targets_)
+            target.last.reset();
+    }
+
+private:
+    std::optional<ModelFit> follow(Target& target, const RgbdFrame& frame) {
+        if (target.last && frame.t - target.seen_at > kMemory) target.last.reset();
+        if (!target.last) return std::nullopt;
+        auto fit = accepted(target, frame, predicted(target, frame.t));
+        const bool moved = !target.velocity.isZero() || !target.turning.isZero();
+        if (!fit && moved) fit = accepted(target, frame, target.last->T_cam_obj);
+        return fit;
+    }
+
+    std::optional<ModelFit> accepted(
+        const Target& target, const RgbdFrame& frame, const Eigen::Isometry3d& T_start
+    ) {
+        auto fit = fitter_.fit(frame.depth, *target.model, T_start, {});
+        if (fit && !is_accepted(*fit, *target.model, camera_, kFollowed)) fit.reset();
+        return fit;
+    }
+
+    /// What others were found in is taken out, so that two of a kind are two.
+    void recognise_lost(const RgbdFrame& frame) {
+        const auto is_lost = [](const auto& fit) {
+            return !fit;
+        };
+        if (std::none_of(fits_.begin(), fits_.end(), is_lost)) return;
+        rest_ = frame.depth;
+        for (std::size_t i = 0; i < targets_.size(); ++i)
+            if (fits_[i]) take_out(*targets_[i].model, fits_[i]->T_cam_obj);
+        for (std::size_t i = 0; i < targets_.size(); ++i) {
+            if (fits_[i]) continue;
+            fits_[i] = targets_[i].recogniser->find(rest_);
+            if (!fits_[i]) continue;
+            targets_[i].last.reset();  // no velocity from where it was lost to here
+            take_out(*targets_[i].model, fits_[i]->T_cam_obj);
+        }
+    }
+
+    void take_out(const ObjectModel& model, const Eigen::Isometry3d& T_cam_obj) {
+        viewer_.look(model, T_cam_obj);
+        const auto& seen = viewer_.picture();
+        const auto width = static_cast<std::size_t>(camera_.depth.width);
+        for (int v = 0; v < seen.height; ++v)
+            for (int u = 0; u < seen.width; ++u)
+                if (seen.inverse[static_cast<std::size_t>(v * seen.width + u)] > 0.0F)
+                    rest_
+                        [static_cast<std::size_t>(seen.top + v) * width +
+                         static_cast<std::size_t>(seen.left + u)] = 0;
+    }
+
+    RgbdCamera camera_;
+    std::vector<Target> targets_;
+    ModelFitter fitter_;
+    ModelViewer viewer_;
+    std::vector<std::optional<ModelFit>> fits_;
+    std::vector<std::uint16_t> rest_;
+};
+
+}  // namespace
+
+Result<void> check(const SurfacePatchSettings& settings, const std::string& path) {
+    if (!settings.mesh)
+        return fail(
+            ErrorCode::invalid_argument,
+            path + ".model",
+            "was not loaded from \"" + settings.model + "\"",
+            "give a .ply, .obj, .stl or .pcd file"
+        );
+    if (std::isfinite(settings.model_unit_m) && settings.model_unit_m > 0.0) return {};
+    return fail(
+        ErrorCode::invalid_argument,
+        path + ".model_unit_m",
+        "is " + std::to_string(settings.model_unit_m),
+        "give metres for each unit of the model, above 0, e.g. 0.001 for millimetres"
+    );
+}
+
+Result<std::unique_ptr<Tracker>> make_surface_patch_tracker(
+    const RgbdCamera& camera, TrackedObjects<SurfacePatchSettings> objects
+) {
+    std::vector<Target> targets;
+    for (auto& object : objects) {
+        const auto wrong = [&](Error error) {
+            error.field = object.name + ": " + object.settings.model;
+            return tl::unexpected<Error>(std::move(error));
+        };
+        auto model = make_object_model(*object.settings.mesh, object.settings.model_unit_m);
+        if (!model) return wrong(model.error());
+        Target target;
+        target.model = std::make_shared<const ObjectModel>(std::move(*model));
+        target.recogniser =
+            std::make_unique<PatchRecogniser>(camera, target.model, object.settings.seed);
+        if (target.recogniser->model_patches() == 0)
+            return wrong(
+                {ErrorCode::invalid_argument,
+                 {},
+                 "has no place where its surface bends in a way of its own",
+                 "track it by a shape: sphere, plane, cylinder or cone; is model_unit_m right?"}
+            );
+        target.object = std::move(object);
+        targets.push_back(std::move(target));
+    }
+    return std::make_unique<SurfacePatchTracker>(camera, std::move(targets));
+}
+
+}  // namespace kinectlab
