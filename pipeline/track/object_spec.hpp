@@ -13,11 +13,39 @@
 
 namespace kinectlab {
 
-/// Method "sphere": a ball among what moved.
+/// Where a shape is looked for: among what moved, or in the whole picture, moved or not.
+enum class LookIn : std::uint8_t { moved, scene };
+
+/// How a first guess of a shape is found: random minimal samples or votes of all points.
+enum class GuessBy : std::uint8_t { ransac, hough };
+
+/// Method "sphere": a ball.
 struct SphereSettings {
     std::optional<double> radius_m;  ///< known radius; free if absent
     double min_radius_m = 0.01;      ///< where it is free
     double max_radius_m = 0.30;
+    LookIn in = LookIn::moved;
+    GuessBy search = GuessBy::ransac;
+};
+
+/// Method "plane": a board, a face of a box, a table; the biggest one if there are several.
+struct PlaneSettings {
+    LookIn in = LookIn::moved;
+    GuessBy search = GuessBy::ransac;
+};
+
+/// Method "cylinder": a can, a pipe, a round rod, seen from outside.
+struct CylinderSettings {
+    std::optional<double> radius_m;  ///< known radius; free if absent
+    double min_radius_m = 0.01;      ///< where it is free
+    double max_radius_m = 0.30;
+    LookIn in = LookIn::moved;
+};
+
+/// Method "cone": a whole one or a piece, seen from outside.
+struct ConeSettings {
+    std::optional<double> half_angle_rad;  ///< between axis and surface, if known
+    LookIn in = LookIn::moved;
 };
 
 /// Method "change": whatever moved.
@@ -86,10 +114,21 @@ using MethodSettings = std::variant<
     SurfacePatchSettings,
     ColourSettings,
     TextureSettings,
-    Sift3dTrackSettings>;
+    Sift3dTrackSettings,
+    PlaneSettings,
+    CylinderSettings,
+    ConeSettings>;
 
 inline constexpr std::array<std::string_view, std::variant_size_v<MethodSettings>> kTrackingMethods{
-    "sphere", "change", "surface_patch", "colour", "texture", "sift3d"};
+    "sphere",
+    "change",
+    "surface_patch",
+    "colour",
+    "texture",
+    "sift3d",
+    "plane",
+    "cylinder",
+    "cone"};
 
 /// One object to track, as given in {"objects":[…]} or by an experiment. Plain values here: JSON is
 /// read by whoever has a file (server/experiments), the pipeline knows none.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 
 #include <nlohmann/json.hpp>
 
@@ -44,9 +45,59 @@ void read_radii(ObjectReader& reader, Settings& settings) {
     }
 }
 
+/// One of two words; the first where the key is missing.
+template <class Choice>
+Choice read_choice(
+    ObjectReader& reader, const std::string& key, const char* first, const char* second
+) {
+    const std::string word = reader.has(key) ? reader.text(key) : first;
+    if (reader.ok() && word != first && word != second)
+        reader.refuse(
+            key,
+            "is \"" + word.substr(0, 60) + "\"",
+            "give \"" + std::string(first) + "\" or \"" + second + "\""
+        );
+    return static_cast<Choice>(word == second);
+}
+
+LookIn read_in(ObjectReader& reader) {
+    return read_choice<LookIn>(reader, "in", "moved", "scene");
+}
+
+GuessBy read_search(ObjectReader& reader) {
+    return read_choice<GuessBy>(reader, "search", "ransac", "hough");
+}
+
 MethodSettings read_sphere(ObjectReader& reader) {
     SphereSettings settings;
     read_radii(reader, settings);
+    settings.in = read_in(reader);
+    settings.search = read_search(reader);
+    return settings;
+}
+
+MethodSettings read_plane(ObjectReader& reader) {
+    return PlaneSettings{read_in(reader), read_search(reader)};
+}
+
+MethodSettings read_cylinder(ObjectReader& reader) {
+    CylinderSettings settings;
+    read_radii(reader, settings);
+    settings.in = read_in(reader);
+    return settings;
+}
+
+MethodSettings read_cone(ObjectReader& reader) {
+    ConeSettings settings;
+    settings.in = read_in(reader);
+    if (reader.has("half_angle_deg")) {
+        const double angle = reader.number_or("half_angle_deg", 0.0);
+        if (reader.ok() && !(angle >= 5.0 && angle <= 70.0))
+            reader.refuse(
+                "half_angle_deg", "is " + nlohmann::json(angle).dump(), "give degrees, 5 to 70"
+            );
+        settings.half_angle_rad = angle * std::numbers::pi / 180.0;
+    }
     return settings;
 }
 
@@ -151,12 +202,15 @@ struct MethodReader {
 /// In the order of kTrackingMethods.
 const std::array<MethodReader, kTrackingMethods.size()>& readers() {
     static const std::array<MethodReader, kTrackingMethods.size()> all{{
-        {{"radius_m", "min_radius_m", "max_radius_m"}, read_sphere},
+        {{"radius_m", "min_radius_m", "max_radius_m", "in", "search"}, read_sphere},
         {{}, read_change},
         {{"model", "model_unit_m", "seed"}, read_surface_patch},
         {{"hue_deg", "saturation", "value", "box", "click", "learn_at_s"}, read_colour},
         {{"box", "learn_at_s", "spots", "fewest_spots"}, read_texture},
         {{"box", "learn_at_s", "scale_m", "fewest_spots"}, read_sift3d},
+        {{"in", "search"}, read_plane},
+        {{"radius_m", "min_radius_m", "max_radius_m", "in"}, read_cylinder},
+        {{"half_angle_deg", "in"}, read_cone},
     }};
     return all;
 }

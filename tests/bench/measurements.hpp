@@ -8,6 +8,8 @@ namespace kinectlab::bench {
 
 Figures measure_frame_to_pose();
 Figures measure_sphere_accuracy();
+Figures measure_shape_regions();
+Figures measure_shape_scene();
 Figures measure_gravity_from_positions();
 Figures measure_gravity_khoshelham();
 Figures measure_gravity_kinect();
@@ -25,6 +27,8 @@ struct Measurement {
 inline constexpr std::array kMeasurements{
     Measurement{"depth frame to pose, stock chain", measure_frame_to_pose},
     Measurement{"sphere centre accuracy", measure_sphere_accuracy},
+    Measurement{"sphere, cylinder, cone, region of interest", measure_shape_regions},
+    Measurement{"whole scene, four kinds of shape", measure_shape_scene},
     Measurement{"g, white positions, analysis of 900 positions", measure_gravity_from_positions},
     Measurement{"g, khoshelham noise", measure_gravity_khoshelham},
     Measurement{"g, kinect noise", measure_gravity_kinect},
