@@ -141,6 +141,7 @@ std::optional<ModelFit> PatchRecogniser::find(std::span<const std::uint16_t> dep
         [](const Proposal& a, const Proposal& b) { return a.score > b.score; }
     );
 
+    const ModelFitStart far{0.05, 0.5, 0.06};
     std::vector<ModelFit> sketches;
     for (const auto& T : distinct_best())
         if (auto fit = sketch_.fit(depth, *model_, T, far, kSketchRounds)) sketches.push_back(*fit);
