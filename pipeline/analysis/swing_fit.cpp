@@ -73,8 +73,14 @@ std::vector<bool> within(const std::vector<double>& d, double limit) {
     return use;
 }
 
-/// Sum of the products of the scores at all lags up to a quarter period, Bartlett-weighted.
-SwingMatrix score_covariance(
+struct ScoreCovariance {
+    SwingMatrix independent;  ///< each sample with its own noise (White 1980)
+    SwingMatrix correlated;   ///< and with its neighbours' (Newey and West 1987)
+};
+
+/// Sum of the products of the scores: of each sample with itself, and at all lags up to a quarter
+/// period, Bartlett-weighted.
+ScoreCovariance score_covariance(
     Samples samples,
     const Residuals& residuals,
     const SwingParameters& parameters,
@@ -92,22 +98,26 @@ SwingMatrix score_covariance(
     const double step =
         (samples.back().t - samples.front().t) / static_cast<double>(samples.size());
     const int lags = std::max(3, static_cast<int>(period / 4.0 / step));
-    SwingMatrix sum = SwingMatrix::Zero();
+    ScoreCovariance sum{SwingMatrix::Zero(), SwingMatrix::Zero()};
     for (std::size_t i = 0; i < scores.size(); ++i) {
-        SwingVector smoothed = 0.5 * scores[i];
+        SwingVector before = SwingVector::Zero();
         for (int lag = 1; lag <= lags && static_cast<std::size_t>(lag) <= i; ++lag)
-            smoothed += (1.0 - lag / (lags + 1.0)) * scores[i - static_cast<std::size_t>(lag)];
-        sum.noalias() += scores[i] * smoothed.transpose();
+            before += (1.0 - lag / (lags + 1.0)) * scores[i - static_cast<std::size_t>(lag)];
+        sum.independent.noalias() += scores[i] * scores[i].transpose();
+        sum.correlated.noalias() += scores[i] * before.transpose();
     }
-    return sum + sum.transpose();
+    sum.correlated = sum.independent + sum.correlated + sum.correlated.transpose().eval();
+    return sum;
 }
 
-/// White noise's covariance, each parameter widened by what correlation in time adds to it.
-SwingMatrix widened(const SwingMatrix& white, const SwingMatrix& correlated) {
+/// The covariance that the samples' own noise makes, each parameter widened by what correlation in
+/// time adds to it.
+SwingMatrix widened(const SwingMatrix& independent, const SwingMatrix& correlated) {
     SwingVector factor = SwingVector::Ones();
     for (int i = 0; i < kSwingParameters; ++i)
-        if (white(i, i) > 0.0) factor[i] = std::sqrt(std::max(1.0, correlated(i, i) / white(i, i)));
-    return factor.asDiagonal() * white * factor.asDiagonal();
+        if (independent(i, i) > 0.0)
+            factor[i] = std::sqrt(std::max(1.0, correlated(i, i) / independent(i, i)));
+    return factor.asDiagonal() * independent * factor.asDiagonal();
 }
 
 Result<SwingParameters> follow_free_swing(
@@ -219,12 +229,12 @@ Result<SwingFit> fit_swing(
 
     const NormalEquations at_best = linearise(samples, fit.parameters, weights);
     const SwingMatrix prior = prior_information(priors);
-    const SwingMatrix scores =
+    const ScoreCovariance scores =
         score_covariance(samples, fit.residuals, fit.parameters, weights, guess.period);
     const SwingMatrix c = inverse_information(at_best.information + prior, 1);
     SwingMatrix tilt_prior = prior;
     tilt_prior(kRadius, kRadius) = 0.0;
-    fit.from_noise = widened(c * at_best.information * c, c * scores * c);
+    fit.from_noise = widened(c * scores.independent * c, c * scores.correlated * c);
     fit.from_tilt = c * tilt_prior * c;
     fit.by_radius = c.col(kRadius) * prior(kRadius, kRadius);
 
@@ -236,9 +246,9 @@ Result<SwingFit> fit_swing(
                 at_best.gradient + known * prior_offset(fit.parameters, priors);
             step = (inverse * gradient)[index];
             u = std::sqrt(
-                widened(inverse * at_best.information * inverse, inverse * scores * inverse)(
-                    index, index
-                ) +
+                widened(
+                    inverse * scores.independent * inverse, inverse * scores.correlated * inverse
+                )(index, index) +
                 (inverse * known * inverse)(index, index)
             );
         };

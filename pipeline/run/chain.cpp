@@ -60,6 +60,8 @@ struct Chain::State {
           change(change_settings(settings.camera)),
           segmenter(change, settings.min_segment_points),
           trackers(std::move(made)) {
+        for (const auto& object : settings.objects)
+            if (kinectlab::needs_colour(object)) needs_colour = object.name;
         runs.reserve(most_runs(change));
         samples.reserve(
             settings.objects.size() * static_cast<std::size_t>(Segmenter::kMaxSegments)
@@ -79,7 +81,30 @@ struct Chain::State {
         );
     }
 
+    /// A picture that is missing now and then makes its objects lost; one that never came will not.
+    [[nodiscard]] Result<void> check_colour(const RgbdFrame& frame) {
+        const auto size = 3 * static_cast<std::size_t>(camera.colour.width) *
+                          static_cast<std::size_t>(camera.colour.height);
+        if (needs_colour.empty() || frame.rgb.size() == size) {
+            had_colour = true;
+            return {};
+        }
+        if (had_colour && frame.rgb.empty()) return {};
+        return fail(
+            ErrorCode::bad_data,
+            "rgb",
+            frame.rgb.empty()
+                ? "there is no colour, without which \"" + needs_colour + "\" cannot be tracked"
+                : "the colour picture has " + std::to_string(frame.rgb.size()) + " bytes",
+            frame.rgb.empty() ? "give a recording or a camera with colour, or another method"
+                              : "the camera has " + std::to_string(camera.colour.width) + "x" +
+                                    std::to_string(camera.colour.height) + " pixels of 3 bytes"
+        );
+    }
+
     RgbdCamera camera;
+    std::string needs_colour;  // name of an object that does; empty if none
+    bool had_colour = false;
     ReferenceScene reference;
     ChangeLimits limits;
     bool limits_are_old = true;
@@ -112,6 +137,7 @@ Result<void> Chain::learn(const RgbdFrame& frame) {
 Result<std::span<const TrackSample>> Chain::track(const RgbdFrame& frame) {
     State& s = *state_;
     if (auto ok = s.check_size(frame); !ok) return tl::unexpected(ok.error());
+    if (auto ok = s.check_colour(frame); !ok) return tl::unexpected(ok.error());
     if (s.reference.learned_frames() == 0)
         return fail(
             ErrorCode::conflict,

@@ -32,11 +32,37 @@ struct SurfacePatchSettings {
     std::vector<std::string> warnings;         ///< what a person should know of it
 };
 
+/// A box in the colour picture, px; a click is a box of one pixel.
+struct PictureBox {
+    int left = 0;
+    int top = 0;
+    int width = 1;
+    int height = 1;
+};
+
+/// Which colours pass: hue, saturation and value as every colour chooser shows them.
+struct ColourBounds {
+    double hue_min_deg = 0.0;  ///< 0 to 360; above hue_max_deg the range goes through red
+    double hue_max_deg = 360.0;
+    double saturation_min = 0.25;  ///< 0 to 1; greyer than that has no hue to speak of
+    double saturation_max = 1.0;
+    double value_min = 0.1;  ///< 0 to 1
+    double value_max = 1.0;
+};
+
+/// Method "colour": whatever has a colour of its own. Give bounds or a box.
+struct ColourSettings {
+    std::optional<ColourBounds> bounds;
+    std::optional<PictureBox> box;  ///< the colour is learned from what is there
+    double learn_at_s = 0.0;        ///< in the first frame this long after the first one
+};
+
 /// One alternative for each method, in the order of kTrackingMethods.
-using MethodSettings = std::variant<SphereSettings, ChangeTrackSettings, SurfacePatchSettings>;
+using MethodSettings =
+    std::variant<SphereSettings, ChangeTrackSettings, SurfacePatchSettings, ColourSettings>;
 
 inline constexpr std::array<std::string_view, std::variant_size_v<MethodSettings>> kTrackingMethods{
-    "sphere", "change", "surface_patch"};
+    "sphere", "change", "surface_patch", "colour"};
 
 /// One object to track, as given in {"objects":[…]} or by an experiment. Plain values here: JSON is
 /// read by whoever has a file (server/experiments), the pipeline knows none.
@@ -52,6 +78,11 @@ struct ObjectSpec {
 /// Whether a method reports any number of things under one name instead of one object.
 [[nodiscard]] inline bool finds_many(const ObjectSpec& spec) {
     return std::holds_alternative<ChangeTrackSettings>(spec.settings);
+}
+
+/// Whether a method cannot do without the colour picture.
+[[nodiscard]] inline bool needs_colour(const ObjectSpec& spec) {
+    return std::holds_alternative<ColourSettings>(spec.settings);
 }
 
 }  // namespace kinectlab

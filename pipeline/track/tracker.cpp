@@ -3,6 +3,7 @@
 #include <set>
 
 #include "pipeline/track/change.hpp"
+#include "pipeline/track/colour.hpp"
 #include "pipeline/track/sphere.hpp"
 #include "pipeline/track/surface_patch.hpp"
 
@@ -38,10 +39,17 @@ Result<void> check_names(std::span<const ObjectSpec> objects) {
     return {};
 }
 
-Result<void> check_settings(std::span<const ObjectSpec> objects) {
+/// A method whose settings mean places in the picture is asked with the camera too.
+Result<void> check_settings(const RgbdCamera& camera, std::span<const ObjectSpec> objects) {
     for (std::size_t i = 0; i < objects.size(); ++i) {
         const auto checked = std::visit(
-            [&](const auto& settings) { return check(settings, path_of(i)); }, objects[i].settings
+            [&](const auto& settings) {
+                if constexpr (requires { check(settings, camera, path_of(i)); })
+                    return check(settings, camera, path_of(i));
+                else
+                    return check(settings, path_of(i));
+            },
+            objects[i].settings
         );
         if (!checked) return checked;
     }
@@ -64,7 +72,7 @@ Result<std::vector<std::unique_ptr<Tracker>>> make_trackers(
     const RgbdCamera& camera, std::span<const ObjectSpec> objects
 ) {
     if (auto ok = check_names(objects); !ok) return tl::unexpected(ok.error());
-    if (auto ok = check_settings(objects); !ok) return tl::unexpected(ok.error());
+    if (auto ok = check_settings(camera, objects); !ok) return tl::unexpected(ok.error());
     std::vector<std::unique_ptr<Tracker>> trackers;
     Result<void> all_made;
     const auto add = [&](auto own, auto make) {
@@ -79,6 +87,7 @@ Result<std::vector<std::unique_ptr<Tracker>>> make_trackers(
     add(own<SphereSettings>(objects), make_sphere_tracker);
     add(own<ChangeTrackSettings>(objects), make_change_tracker);
     add(own<SurfacePatchSettings>(objects), make_surface_patch_tracker);
+    add(own<ColourSettings>(objects), make_colour_tracker);
     if (!all_made) return tl::unexpected(all_made.error());
     return trackers;
 }

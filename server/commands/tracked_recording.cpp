@@ -104,8 +104,9 @@ std::vector<Trajectory> ranked(
 Result<TrackedRecording> track_recording(
     const std::filesystem::path& path, std::vector<ObjectSpec> objects
 ) {
-    const RecordingOptions depth_alone{.with_colour = false};
-    auto source = open_recording(path, depth_alone);
+    const bool with_colour = std::any_of(objects.begin(), objects.end(), needs_colour);
+    const RecordingOptions options{.with_colour = with_colour};
+    auto source = open_recording(path, options);
     if (!source) return forward(source);
     TrackedRecording recording;
     recording.source = (*source)->info();
@@ -121,7 +122,7 @@ Result<TrackedRecording> track_recording(
     recording.learned_frames = chain->learned_frames();
 
     source->reset();  // an .oni file has one player, which must start anew
-    auto again = open_recording(path, depth_alone);
+    auto again = open_recording(path, options);
     if (!again) return forward(again);
     if (auto tracked = track_all(**again, *chain, recording); !tracked) return forward(tracked);
     return recording;

@@ -53,6 +53,60 @@ MethodSettings read_change(ObjectReader&) {
     return ChangeTrackSettings{};
 }
 
+/// A list of `count` numbers; zeros after an error.
+std::vector<double> read_numbers(
+    ObjectReader& reader, const std::string& key, std::size_t count, const std::string& cure
+) {
+    std::vector<double> numbers(count, 0.0);
+    const auto& list = reader.array(key);
+    if (!reader.ok()) return numbers;
+    const auto is_number = [](const nlohmann::json& element) {
+        return element.is_number();
+    };
+    if (list.size() == count && std::all_of(list.begin(), list.end(), is_number))
+        return list.get<std::vector<double>>();
+    reader.refuse(key, "is not a list of " + std::to_string(count) + " numbers", "give " + cure);
+    return numbers;
+}
+
+int to_pixel(double value) {
+    return static_cast<int>(std::clamp(value, -1e6, 1e6));
+}
+
+PictureBox read_box(ObjectReader& reader) {
+    const auto box = read_numbers(reader, "box", 4, "[left, top, width, height] in pixels");
+    return {to_pixel(box[0]), to_pixel(box[1]), to_pixel(box[2]), to_pixel(box[3])};
+}
+
+PictureBox read_click(ObjectReader& reader) {
+    const auto click = read_numbers(reader, "click", 2, "[column, row] in pixels");
+    return {to_pixel(click[0]), to_pixel(click[1]), 1, 1};
+}
+
+void read_range(ObjectReader& reader, const std::string& key, double& low, double& high) {
+    if (!reader.has(key)) return;
+    const auto range = read_numbers(reader, key, 2, "[lowest, highest]");
+    low = range[0];
+    high = range[1];
+}
+
+MethodSettings read_colour(ObjectReader& reader) {
+    ColourSettings settings;
+    if (reader.has("box") && reader.has("click"))
+        reader.refuse("click", "is given together with box", "give one of them");
+    if (reader.has("box")) settings.box = read_box(reader);
+    if (reader.has("click")) settings.box = read_click(reader);
+    if (reader.has("hue_deg") || reader.has("saturation") || reader.has("value")) {
+        ColourBounds bounds;
+        read_range(reader, "hue_deg", bounds.hue_min_deg, bounds.hue_max_deg);
+        read_range(reader, "saturation", bounds.saturation_min, bounds.saturation_max);
+        read_range(reader, "value", bounds.value_min, bounds.value_max);
+        settings.bounds = bounds;
+    }
+    settings.learn_at_s = reader.number_or("learn_at_s", settings.learn_at_s);
+    return settings;
+}
+
 struct MethodReader {
     std::vector<std::string> keys;
     MethodSettings (*read)(ObjectReader&);
@@ -64,6 +118,7 @@ const std::array<MethodReader, kTrackingMethods.size()>& readers() {
         {{"radius_m", "min_radius_m", "max_radius_m"}, read_sphere},
         {{}, read_change},
         {{"model", "model_unit_m", "seed"}, read_surface_patch},
+        {{"hue_deg", "saturation", "value", "box", "click", "learn_at_s"}, read_colour},
     }};
     return all;
 }

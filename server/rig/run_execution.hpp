@@ -20,7 +20,7 @@ namespace kinectlab::rig {
 /// How long a run waits for what may never come.
 struct RunLimits {
     TimeNs sensor_silence = 5 * kNsPerSecond;  ///< without a frame, before the run fails
-    TimeNs release_echo = 3 * kNsPerSecond;    ///< until the actuator says that the bob swings
+    TimeNs release_echo = 10 * kNsPerSecond;   ///< until the actuator says that the bob swings
     TimeNs stop_echo = 90 * kNsPerSecond;      ///< until it says that the bob hangs at rest
 };
 

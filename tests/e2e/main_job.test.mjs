@@ -4,11 +4,11 @@ import { after, before, test } from 'node:test';
 import { startServer } from '../integration/server.mjs';
 import { canvasState, inspect, launch, visit } from './browser.mjs';
 import { openDoor } from './door.mjs';
-import { changePassword, mainButton, readMeasurement, signIn, stateSentence, tabTo } from './steps.mjs';
+import { changePassword, mainButton, reach, readMeasurement, signIn, stateSentence, tabTo } from './steps.mjs';
 
 const adminPassword = 'swing low sweet chariot';
 const studentPassword = 'an arc of ten degrees';
-const measured_s = 14;
+const measured_s = 20;
 
 const endings = [];
 const lifetime = { after: (end) => endings.unshift(end) };
@@ -90,12 +90,12 @@ test('the camera picture is there and moves, the run is prepared and released', 
   await page.getByText('The picture is on its way').waitFor({ state: 'detached' });
   findings.push(...(await inspect(page, '09-session')));
   await mainButton(page, 'prepare').click();
-  await mainButton(page, 'release').waitFor({ timeout: 40_000 });
+  await reach(page, 'release');
   assert.match(await stateSentence(page), /held at its angle/);
   const still = await canvasState(page, camera);
   assert.ok(still.contrast > 60, `a picture and not a plain area: contrast ${still.contrast}`);
   await mainButton(page, 'release').click();
-  await mainButton(page, 'stop').waitFor();
+  await reach(page, 'stop');
   assert.match(await stateSentence(page), /swings/);
   await page.waitForFunction(
     ([selector, hash]) => {
@@ -107,13 +107,13 @@ test('the camera picture is there and moves, the run is prepared and released', 
     },
     [camera, still.hash],
   );
-  await page.getByText(/^([5-9]|1\d) of 14/).waitFor();
+  await page.getByText(/^([5-9]|1\d) of 20/).waitFor();
   findings.push(...(await inspect(page, '10-measuring')));
 });
 
 test('g appears with its uncertainty, as the interface says it', async () => {
   const { page } = admin;
-  await mainButton(page, 'result').waitFor({ timeout: 60_000 });
+  await reach(page, 'result', 60_000);
   await mainButton(page, 'result').click();
   await page.getByRole('heading', { name: /^Run \d+/ }).waitFor();
   await page.locator('.uplot').nth(1).waitFor();
@@ -213,7 +213,7 @@ test('a student does all of it by keyboard alone', async () => {
   await tabTo(page, main);
   await keyboard.press('Enter');
   for (const [action, key] of [['release', 'Enter'], ['stop', null], ['result', 'Enter']]) {
-    await mainButton(page, action).waitFor({ timeout: 60_000 });
+    await reach(page, action, 60_000);
     assert.ok(await main.evaluate((e) => e === document.activeElement), `the focus stays on the button that now says ${action}`);
     if (key) await keyboard.press(key);
   }

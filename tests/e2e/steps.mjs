@@ -17,6 +17,13 @@ export function mainButton(page, action) {
   return page.locator(`button[data-action="${action}"]:not([aria-disabled])`);
 }
 
+/** Waits until the main button offers the action; if it never does, says what the page said instead. */
+export async function reach(page, action, timeout = 40_000) {
+  await mainButton(page, action).waitFor({ timeout }).catch(async (error) => {
+    throw new Error(`the main button never said ${action}; the page said: ${await stateSentence(page)}`, { cause: error });
+  });
+}
+
 export function stateSentence(page) {
   return page.getByTestId('state').innerText();
 }
