@@ -49,7 +49,9 @@ struct ConeSettings {
 };
 
 /// Method "change": whatever moved.
-struct ChangeTrackSettings {};
+struct ChangeTrackSettings {
+    double memory_s = 2.0;  ///< so long a thing that is not seen keeps its name; 0 to 60
+};
 
 /// Method "surface_patch": a rigid thing of any shape, known by a model of its surface.
 struct SurfacePatchSettings {

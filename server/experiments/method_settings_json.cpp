@@ -101,8 +101,12 @@ MethodSettings read_cone(ObjectReader& reader) {
     return settings;
 }
 
-MethodSettings read_change(ObjectReader&) {
-    return ChangeTrackSettings{};
+MethodSettings read_change(ObjectReader& reader) {
+    ChangeTrackSettings settings;
+    settings.memory_s = reader.number_or("memory_s", settings.memory_s);
+    if (settings.memory_s < 0.0 || settings.memory_s > 60.0)
+        reader.refuse("memory_s", "is not between 0 and 60", "give seconds, e.g. 2");
+    return settings;
 }
 
 /// A list of `count` numbers; zeros after an error.
@@ -203,7 +207,7 @@ struct MethodReader {
 const std::array<MethodReader, kTrackingMethods.size()>& readers() {
     static const std::array<MethodReader, kTrackingMethods.size()> all{{
         {{"radius_m", "min_radius_m", "max_radius_m", "in", "search"}, read_sphere},
-        {{}, read_change},
+        {{"memory_s"}, read_change},
         {{"model", "model_unit_m", "seed"}, read_surface_patch},
         {{"hue_deg", "saturation", "value", "box", "click", "learn_at_s"}, read_colour},
         {{"box", "learn_at_s", "spots", "fewest_spots"}, read_texture},
