@@ -13,11 +13,39 @@
 
 namespace kinectlab {
 
-/// Method "sphere": a ball among what moved.
+/// Where a shape is looked for: among what moved, or in the whole picture, moved or not.
+enum class LookIn : std::uint8_t { moved, scene };
+
+/// How a first guess of a shape is found: random minimal samples or votes of all points.
+enum class GuessBy : std::uint8_t { ransac, hough };
+
+/// Method "sphere": a ball.
 struct SphereSettings {
     std::optional<double> radius_m;  ///< known radius; free if absent
     double min_radius_m = 0.01;      ///< where it is free
     double max_radius_m = 0.30;
+    LookIn in = LookIn::moved;
+    GuessBy search = GuessBy::ransac;
+};
+
+/// Method "plane": a board, a face of a box, a table; the biggest one if there are several.
+struct PlaneSettings {
+    LookIn in = LookIn::moved;
+    GuessBy search = GuessBy::ransac;
+};
+
+/// Method "cylinder": a can, a pipe, a round rod, seen from outside.
+struct CylinderSettings {
+    std::optional<double> radius_m;  ///< known radius; free if absent
+    double min_radius_m = 0.01;      ///< where it is free
+    double max_radius_m = 0.30;
+    LookIn in = LookIn::moved;
+};
+
+/// Method "cone": a whole one or a piece, seen from outside.
+struct ConeSettings {
+    std::optional<double> half_angle_rad;  ///< between axis and surface, if known
+    LookIn in = LookIn::moved;
 };
 
 /// Method "change": whatever moved.
@@ -59,12 +87,50 @@ struct ColourSettings {
     double learn_at_s = 0.0;        ///< in the first frame this long after the first one
 };
 
+/// How spots of a texture are described.
+enum class TextureSpots {
+    sift,    ///< bears change of size and view; some 10 ms for an object
+    binary,  ///< some 2 ms
+};
+
+/// Method "texture": whatever has a print, a pattern or spots on it.
+struct TextureSettings {
+    std::optional<PictureBox> box;  ///< the object's first look; else what moved
+    double learn_at_s = 0.0;        ///< not before this long after the first frame
+    TextureSpots spots = TextureSpots::sift;
+    int fewest_spots = 8;  ///< that must agree on a pose
+};
+
+/// Method "sift3d": whatever has a texture on a shape, by spots of the surface in space.
+struct Sift3dTrackSettings {
+    std::optional<PictureBox> box;
+    double learn_at_s = 0.0;
+    double scale_m = 0.004;  ///< of the smallest spots; also the voxel's side
+    int fewest_spots = 6;    ///< that must agree on a pose
+};
+
 /// One alternative for each method, in the order of kTrackingMethods.
-using MethodSettings =
-    std::variant<SphereSettings, ChangeTrackSettings, SurfacePatchSettings, ColourSettings>;
+using MethodSettings = std::variant<
+    SphereSettings,
+    ChangeTrackSettings,
+    SurfacePatchSettings,
+    ColourSettings,
+    TextureSettings,
+    Sift3dTrackSettings,
+    PlaneSettings,
+    CylinderSettings,
+    ConeSettings>;
 
 inline constexpr std::array<std::string_view, std::variant_size_v<MethodSettings>> kTrackingMethods{
-    "sphere", "change", "surface_patch", "colour"};
+    "sphere",
+    "change",
+    "surface_patch",
+    "colour",
+    "texture",
+    "sift3d",
+    "plane",
+    "cylinder",
+    "cone"};
 
 /// One object to track, as given in {"objects":[…]} or by an experiment. Plain values here: JSON is
 /// read by whoever has a file (server/experiments), the pipeline knows none.
@@ -84,7 +150,9 @@ struct ObjectSpec {
 
 /// Whether a method cannot do without the colour picture.
 [[nodiscard]] inline bool needs_colour(const ObjectSpec& spec) {
-    return std::holds_alternative<ColourSettings>(spec.settings);
+    return std::holds_alternative<ColourSettings>(spec.settings) ||
+           std::holds_alternative<TextureSettings>(spec.settings) ||
+           std::holds_alternative<Sift3dTrackSettings>(spec.settings);
 }
 
 }  // namespace kinectlab

@@ -20,6 +20,9 @@ constexpr std::size_t kFewestPixels = 24;
 constexpr int kMaxIterations = 24;
 constexpr double kFirstGateSigmas = 24.0, kLastGateSigmas = 6.0;
 constexpr double kRimAtFirst = 0.7;  // px inside the outline: what is farther out is left out
+constexpr double kMinRim = 0.02;     // px
+constexpr double kRoughRim = 2.0;    // times σ²: the sensor's rims are worse than its faces
+constexpr int kChoices = 2;          // of the pixels at the last gate
 constexpr double kRimSigmas = 3.0;   // of the shape across the rays, once it is known
 constexpr double kEndMarginPx = 1.5;
 constexpr double kLongestStep = 0.3;  // of the radius; rad for angles
@@ -193,6 +196,7 @@ bool ShapeFitter::settle(Shape& shape, Way& way, Equations& sums) {
     const double sigma = mean_sigma();
     const double last_gate = kLastGateSigmas * sigma;
     double length = 0.0;
+    int at_last_gate = 0;
     for (int i = 0; i < kMaxIterations; ++i) {
         way.R_cam_shape = frame_of(shape);
         linearise(shape, way);
@@ -220,7 +224,7 @@ bool ShapeFitter::settle(Shape& shape, Way& way, Equations& sums) {
         const bool last = way.gate_steps <= last_gate;
         if (last && length < kSettled) return true;
         // Pixels at the rim that come and go would keep the fit from settling.
-        if (last && i > kMaxIterations / 2) way.choose = false;
+        if (last && ++at_last_gate >= kChoices) way.choose = false;
         way.gate_steps = std::max(last_gate, 0.5 * way.gate_steps);
     }
     return length < kStillMoving;
@@ -278,6 +282,29 @@ void ShapeFitter::find_ends(const Shape& shape, double sigma, Way& way) {
     way.high = high;
 }
 
+/// Whether the pixels nearest to the outline err no more than the others. They tell most of a size,
+/// but a real sensor's look aside a little, which shows where the surface is steep.
+bool ShapeFitter::rim_is_sound(const Shape& shape, const Way& way, double wide_m, double sigma) {
+    Way one = way;
+    linearise(shape, one);
+    narrow_ = used_;
+    one.rim_m = wide_m;
+    linearise(shape, one);
+    const double gate = kLastGateSigmas * sigma;
+    double squares = 0.0, count = 0.0;
+    for (std::size_t i = 0; i < offered_; ++i) {
+        if (narrow_[i] == 0.0F || used_[i] != 0.0F) continue;
+        const double off = residual_[i];
+        if (!(std::abs(off) < gate)) {
+            squares += gate * gate;
+        } else {
+            squares += off * off;
+        }
+        count += 1.0;
+    }
+    return squares <= kRoughRim * sigma * sigma * count;
+}
+
 std::optional<ShapeFit> ShapeFitter::fit_round(const Shape& guess, bool fixed_size) {
     if (!(guess.size > 0.0)) return std::nullopt;
     ShapeFit fit;
@@ -306,8 +333,10 @@ std::optional<ShapeFit> ShapeFitter::fit_round(const Shape& guess, bool fixed_si
     const double h =
         guess.kind == ShapeKind::cone && way.low > -1e5 ? 0.5 * (way.low + way.high) : 0.0;
     const double sideways2 = rough(0, 0) + 2.0 * h * rough(0, 4) + h * h * rough(4, 4);
-    way.rim_m = std::max(0.25 * px_m, kRimSigmas * std::sqrt(std::max(0.0, sideways2)));
+    const double wide = way.rim_m;
+    way.rim_m = std::max(kMinRim * px_m, kRimSigmas * std::sqrt(std::max(0.0, sideways2)));
     way.choose = true;
+    if (way.rim_m < wide && !rim_is_sound(fit.shape, way, wide, sigma)) way.rim_m = wide;
     if (!settle(fit.shape, way, sums)) return std::nullopt;
 
     const auto unknowns =

@@ -58,6 +58,9 @@ private:
     void linearise(const Shape& shape, const Way& way);
     [[nodiscard]] Equations equations(const Way& way) const;
     void find_ends(const Shape& shape, double sigma, Way& way);
+    [[nodiscard]] bool rim_is_sound(
+        const Shape& shape, const Way& way, double wide_m, double sigma
+    );
     void assess(ShapeFit& fit, double sigma) const;
     [[nodiscard]] double inflation(double sigma, double unknowns);
 
@@ -66,6 +69,7 @@ private:
     std::size_t offered_ = 0;       // pixels with a reading
     std::vector<float> x_, y_, s_;  // ray and disparity; padded with pixels that are not used
     std::vector<std::uint32_t> pixel_;
+    std::vector<float> narrow_;
     std::vector<float> used_, weight_, residual_, height_;  // at the last linearisation
     std::array<std::vector<float>, kUnknowns> slope_;
     int block_columns_, block_rows_;

@@ -56,8 +56,10 @@ KINECTLAB_INLINE Hit meet8(const RoundOptics& at, const Float8& x, const Float8&
 }
 
 KINECTLAB_HOT_LOOP void choose(
-    const RoundPixels& pixels, const RoundOptics& at, float low, float high
+    const RoundPixels& all, const RoundOptics& optics, float low, float high
 ) {
+    const RoundPixels pixels = all;  // copies, which no store can change
+    const RoundOptics at = optics;
     for (std::size_t i = 0; i < pixels.size; i += kFitLanes) {
         const Hit hit = meet8(at, load8(pixels.x + i), load8(pixels.y + i));
         const Mask8 met = (hit.root2 > 0.0F) & (hit.w > 0.0F) & (hit.q3 >= at.least_height) &
@@ -69,8 +71,10 @@ KINECTLAB_HOT_LOOP void choose(
 /// ∂w/∂t = w² (q1, q2, κ q3)/root, ∂w/∂ω = w² (κ - 1) q3 (q2, -q1)/root and ∂w/∂size likewise from
 /// -∂F/∂size: all from F = 0 by implicit differentiation, where ∂(F w²)/∂w = 2 root.
 KINECTLAB_HOT_LOOP void linearise(
-    const RoundPixels& pixels, const RoundOptics& at, float per_gate2
+    const RoundPixels& all, const RoundOptics& optics, float per_gate2
 ) {
+    const RoundPixels pixels = all;  // copies, which no store can change
+    const RoundOptics at = optics;
     const Float8 none = all8(__builtin_nanf(""));
     for (std::size_t i = 0; i < pixels.size; i += kFitLanes) {
         const Hit hit = meet8(at, load8(pixels.x + i), load8(pixels.y + i));

@@ -4,8 +4,11 @@
 
 #include "pipeline/track/change.hpp"
 #include "pipeline/track/colour.hpp"
+#include "pipeline/track/shape_tracker.hpp"
+#include "pipeline/track/sift3d.hpp"
 #include "pipeline/track/sphere.hpp"
 #include "pipeline/track/surface_patch.hpp"
+#include "pipeline/track/texture.hpp"
 
 namespace kinectlab {
 namespace {
@@ -84,10 +87,15 @@ Result<std::vector<std::unique_ptr<Tracker>>> make_trackers(
         else
             all_made = tl::unexpected(made.error());
     };
-    add(own<SphereSettings>(objects), make_sphere_tracker);
+    auto balls = own<SphereSettings>(objects);
+    std::erase_if(balls, [](const auto& ball) { return !is_for_sphere_tracker(ball.settings); });
+    add(std::move(balls), make_sphere_tracker);
+    add(shape_targets(objects), make_shape_tracker);  // one for all, which searches a scene once
     add(own<ChangeTrackSettings>(objects), make_change_tracker);
     add(own<SurfacePatchSettings>(objects), make_surface_patch_tracker);
     add(own<ColourSettings>(objects), make_colour_tracker);
+    add(own<TextureSettings>(objects), make_texture_tracker);
+    add(own<Sift3dTrackSettings>(objects), make_sift3d_tracker);
     if (!all_made) return tl::unexpected(all_made.error());
     return trackers;
 }

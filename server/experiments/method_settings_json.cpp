@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <numbers>
 
 #include <nlohmann/json.hpp>
 
@@ -43,9 +45,59 @@ void read_radii(ObjectReader& reader, Settings& settings) {
     }
 }
 
+/// One of two words; the first where the key is missing.
+template <class Choice>
+Choice read_choice(
+    ObjectReader& reader, const std::string& key, const char* first, const char* second
+) {
+    const std::string word = reader.has(key) ? reader.text(key) : first;
+    if (reader.ok() && word != first && word != second)
+        reader.refuse(
+            key,
+            "is \"" + word.substr(0, 60) + "\"",
+            "give \"" + std::string(first) + "\" or \"" + second + "\""
+        );
+    return static_cast<Choice>(word == second);
+}
+
+LookIn read_in(ObjectReader& reader) {
+    return read_choice<LookIn>(reader, "in", "moved", "scene");
+}
+
+GuessBy read_search(ObjectReader& reader) {
+    return read_choice<GuessBy>(reader, "search", "ransac", "hough");
+}
+
 MethodSettings read_sphere(ObjectReader& reader) {
     SphereSettings settings;
     read_radii(reader, settings);
+    settings.in = read_in(reader);
+    settings.search = read_search(reader);
+    return settings;
+}
+
+MethodSettings read_plane(ObjectReader& reader) {
+    return PlaneSettings{read_in(reader), read_search(reader)};
+}
+
+MethodSettings read_cylinder(ObjectReader& reader) {
+    CylinderSettings settings;
+    read_radii(reader, settings);
+    settings.in = read_in(reader);
+    return settings;
+}
+
+MethodSettings read_cone(ObjectReader& reader) {
+    ConeSettings settings;
+    settings.in = read_in(reader);
+    if (reader.has("half_angle_deg")) {
+        const double angle = reader.number_or("half_angle_deg", 0.0);
+        if (reader.ok() && !(angle >= 5.0 && angle <= 70.0))
+            reader.refuse(
+                "half_angle_deg", "is " + nlohmann::json(angle).dump(), "give degrees, 5 to 70"
+            );
+        settings.half_angle_rad = angle * std::numbers::pi / 180.0;
+    }
     return settings;
 }
 
@@ -111,6 +163,41 @@ MethodSettings read_colour(ObjectReader& reader) {
     return settings;
 }
 
+int read_fewest_spots(ObjectReader& reader, int otherwise) {
+    const double fewest = reader.number_or("fewest_spots", otherwise);
+    if (fewest != std::floor(fewest))
+        reader.refuse("fewest_spots", "is no whole number", "give a whole number from 4 to 1000");
+    return to_pixel(fewest);
+}
+
+/// Where and when an object is looked at first.
+template <class Settings>
+void read_first_look(ObjectReader& reader, Settings& settings) {
+    if (reader.has("box")) settings.box = read_box(reader);
+    settings.learn_at_s = reader.number_or("learn_at_s", settings.learn_at_s);
+    settings.fewest_spots = read_fewest_spots(reader, settings.fewest_spots);
+}
+
+MethodSettings read_texture(ObjectReader& reader) {
+    TextureSettings settings;
+    read_first_look(reader, settings);
+    if (reader.has("spots")) {
+        const std::string spots = reader.text("spots");
+        if (spots == "binary")
+            settings.spots = TextureSpots::binary;
+        else if (spots != "sift")
+            reader.refuse("spots", "is \"" + spots.substr(0, 60) + "\"", "give sift or binary");
+    }
+    return settings;
+}
+
+MethodSettings read_sift3d(ObjectReader& reader) {
+    Sift3dTrackSettings settings;
+    read_first_look(reader, settings);
+    settings.scale_m = reader.number_or("scale_m", settings.scale_m);
+    return settings;
+}
+
 struct MethodReader {
     std::vector<std::string> keys;
     MethodSettings (*read)(ObjectReader&);
@@ -119,10 +206,15 @@ struct MethodReader {
 /// In the order of kTrackingMethods.
 const std::array<MethodReader, kTrackingMethods.size()>& readers() {
     static const std::array<MethodReader, kTrackingMethods.size()> all{{
-        {{"radius_m", "min_radius_m", "max_radius_m"}, read_sphere},
+        {{"radius_m", "min_radius_m", "max_radius_m", "in", "search"}, read_sphere},
         {{"memory_s"}, read_change},
         {{"model", "model_unit_m", "seed"}, read_surface_patch},
         {{"hue_deg", "saturation", "value", "box", "click", "learn_at_s"}, read_colour},
+        {{"box", "learn_at_s", "spots", "fewest_spots"}, read_texture},
+        {{"box", "learn_at_s", "scale_m", "fewest_spots"}, read_sift3d},
+        {{"in", "search"}, read_plane},
+        {{"radius_m", "min_radius_m", "max_radius_m", "in"}, read_cylinder},
+        {{"half_angle_deg", "in"}, read_cone},
     }};
     return all;
 }

@@ -1,0 +1,163 @@
+#include "pipeline/track/shape_detect.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include "pipeline/track/hough.hpp"
+
+namespace kinectlab {
+namespace {
+
+constexpr std::size_t kPoints = 160;  // oriented points of a segment
+constexpr int kTries = 256;
+constexpr int kRivalTries = 48;
+constexpr std::size_t kGuesses = 3;
+constexpr std::size_t kComparePixels = 512;
+constexpr double kSimplerCost = 1.15;     // what a simpler kind may be worse and still explain it
+constexpr double kMinInlierShare = 0.35;  // of the segment: lids, strings and hands belong to it
+constexpr double kPlentyOfInliers = 0.7;  // no further guess is tried
+constexpr double kMaxRmsSigmas = 3.0;
+constexpr double kMaxSizeShareU = 0.15;  // a size less sure than this is no measurement
+constexpr int kFewestPoints = 60;
+constexpr int kSceneStride = 6;       // px between the points that vote in a scene
+constexpr double kNearSigmas = 16.0;  // of a scene's pixels: nearer would cut the noise itself
+
+constexpr Tolerance kRough{3.0, 0.002, 0.08, 0.82};
+
+/// Half the window of the normals' fit: a fifth of the radius if all pixels were one disc.
+int half_window_for(std::size_t pixels) {
+    const double radius_px = std::sqrt(static_cast<double>(pixels) / std::numbers::pi);
+    return static_cast<int>(std::clamp(radius_px / 5.0, 2.0, 5.0));
+}
+
+}  // namespace
+
+SegmentShapes::SegmentShapes(const RgbdCamera& camera)
+    : camera_(camera), scale_(camera), fitter_(camera), rival_(camera) {}
+
+/// Evenly over the reading order, and so over the surface.
+void SegmentShapes::sample(const DisparityImage& image, std::span<const std::uint32_t> pixels) {
+    places_.clear();
+    const std::size_t count = std::min(kPoints, pixels.size());
+    for (std::size_t k = 0; k < count; ++k)
+        places_.push_back(pixels[(2 * k + 1) * pixels.size() / (2 * count)]);
+    find_surface_points(image, camera_, places_, half_window_for(pixels.size()), points_);
+}
+
+void SegmentShapes::guess(const ShapeTarget& target, std::size_t most) {
+    const bool votes = target.search == GuessBy::hough;
+    if (votes && target.kind == ShapeKind::plane)
+        hough_planes(points_, kRough, most, guesses_);
+    else if (votes && target.kind == ShapeKind::sphere)
+        hough_spheres(points_, target.limits, kRough, most, guesses_);
+    else
+        search_shape(target.kind, points_, target.limits, kRough, kTries, most, guesses_);
+}
+
+bool SegmentShapes::is_sound(const ShapeFit& fit, const ShapeTarget& target) const {
+    const double s = scale_.steps_at(std::max(0.1, fit.shape.point.z()));
+    if (fit.quality.points < kFewestPoints ||
+        fit.quality.rms_steps > kMaxRmsSigmas * scale_.sigma_at(s))
+        return false;
+    if (fit.shape.kind == ShapeKind::plane || target.limits.known) return true;
+    return fit.shape.size >= target.limits.least && fit.shape.size <= target.limits.most &&
+           fit.size_u <= kMaxSizeShareU * fit.shape.size;
+}
+
+double SegmentShapes::best_cost(
+    const DisparityImage& image, std::span<const std::uint32_t> pixels, ShapeKind kind
+) {
+    SizeLimits limits;
+    if (kind == ShapeKind::cone) limits = {{}, kLeastConeAngle, kMostConeAngle};
+    search_shape(kind, points_, limits, kRough, kRivalTries, 2, guesses_);
+    double least = 1.0;
+    for (const auto& guess : guesses_)
+        if (const auto fit = rival_.fit(image, pixels, guess.shape, false))
+            least = std::min(least, fit->cost);
+    return least;
+}
+
+bool SegmentShapes::is_its_kind(const DisparityImage& image, const ShapeFit& fit) {
+    const auto own = rival_.fit(image, compared_, fit.shape, true);
+    if (!own) return false;
+    for (const auto kind :
+         {ShapeKind::plane, ShapeKind::sphere, ShapeKind::cylinder, ShapeKind::cone}) {
+        if (kind == fit.shape.kind) continue;
+        const double cost = best_cost(image, compared_, kind);
+        const bool simpler = kind < fit.shape.kind;
+        if (simpler && cost <= kSimplerCost * own->cost + 0.01) return false;
+        if (!simpler && own->cost > kSimplerCost * cost + 0.01) return false;
+    }
+    return true;
+}
+
+std::optional<ShapeFit> SegmentShapes::in_segment(
+    const DisparityImage& image, std::span<const std::uint32_t> pixels, const ShapeTarget& target
+) {
+    sample(image, pixels);
+    guess(target, kGuesses);
+    const bool known = target.limits.known.has_value();
+    // Guesses and rivals are tried on some of the pixels only.
+    compared_.clear();
+    const std::size_t stride = 1 + pixels.size() / kComparePixels;
+    for (std::size_t i = 0; i < pixels.size(); i += stride)
+        compared_.push_back(pixels[i]);
+    std::optional<ShapeFit> best;
+    for (const auto& guess : guesses_) {
+        auto fit = rival_.fit(image, compared_, guess.shape, known);
+        if (!fit || !is_sound(*fit, target) || fit->quality.inlier_share < kMinInlierShare)
+            continue;
+        if (!best || fit->cost < best->cost) best = std::move(fit);
+        if (best->quality.inlier_share > kPlentyOfInliers) break;
+    }
+    if (!best || !is_its_kind(image, *best)) return std::nullopt;
+    best = fitter_.fit(image, pixels, best->shape, known);
+    if (best && !is_sound(*best, target)) best.reset();
+    return best;
+}
+
+void SegmentShapes::near_pixels(const DisparityImage& image, const Shape& shape) {
+    near_.clear();
+    const auto width = static_cast<std::uint32_t>(camera_.depth.width);
+    const auto pixels = width * static_cast<std::uint32_t>(camera_.depth.height);
+    for (std::uint32_t pixel = 0; pixel < pixels; ++pixel) {
+        const double s = image.at(pixel);
+        if (s <= 0.0) continue;
+        const double w = meet(camera_.depth.ray(pixel % width, pixel / width), shape);
+        const double off = s - w / camera_.noise.inverse_depth_step;
+        if (std::abs(off) < kNearSigmas * scale_.sigma_at(s)) near_.push_back(pixel);  // not NaN
+    }
+}
+
+std::optional<ShapeFit> SegmentShapes::in_scene(
+    const DisparityImage& image, const ShapeTarget& target
+) {
+    if (target.kind != ShapeKind::plane && target.kind != ShapeKind::sphere) return std::nullopt;
+    places_.clear();
+    const int width = camera_.depth.width;
+    for (int v = kSceneStride / 2; v < camera_.depth.height; v += kSceneStride)
+        for (int u = kSceneStride / 2; u < width; u += kSceneStride)
+            places_.push_back(static_cast<std::uint32_t>(v * width + u));
+    find_surface_points(image, camera_, places_, 4, points_);
+    guess(target, 2 * kGuesses);
+    std::optional<ShapeFit> best;
+    for (const auto& guess : guesses_) {
+        near_pixels(image, guess.shape);
+        auto fit = fitter_.fit(image, near_, guess.shape, target.limits.known.has_value());
+        if (!fit || !is_sound(*fit, target)) continue;
+        if (!best || fit->quality.points > best->quality.points) best = std::move(fit);
+    }
+    return best;
+}
+
+std::optional<ShapeFit> SegmentShapes::with_known_size(
+    const DisparityImage& image, const SceneShape& found, double size
+) {
+    Shape guess = found.fit.shape;
+    guess.size = size;
+    return fitter_.fit(image, found.pixels, guess, true);
+}
+
+}  // namespace kinectlab
