@@ -251,12 +251,6 @@ private:
 
 }  // namespace
 
-std::optional<DepthCut> level_wall_cut(std::span<const float> disparity) {
-    const auto peak = wall_peak(histogram_of(disparity));
-    if (!peak || peak->foot - peak->top > kSharp) return std::nullopt;
-    return DepthCut{static_cast<double>(peak->foot), 0.0, 0.0};
-}
-
 std::optional<DepthCut> wall_cut(std::span<const float> disparity, int width, int column_step) {
     if (disparity.empty() || width < 1) return std::nullopt;
     const auto peak = wall_peak(histogram_of(disparity));

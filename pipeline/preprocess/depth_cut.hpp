@@ -33,8 +33,4 @@ struct DepthCut {
     std::span<const float> disparity, int width, int column_step = 1
 );
 
-/// The same where the wall stands across the optical axis, its peak is sharp; else nothing. Fewer
-/// readings will do for that, in any order.
-[[nodiscard]] std::optional<DepthCut> level_wall_cut(std::span<const float> disparity);
-
 }  // namespace kinectlab

@@ -11,14 +11,13 @@
 namespace kinectlab {
 namespace {
 
-constexpr int kSparse = 32;  // columns: enough for a wall's peak
-constexpr int kDense = 8;    // for the slopes of a slanted wall
+constexpr int kEvery = 8;
 
 KINECTLAB_HOT_LOOP void sample_disparity(
-    const std::uint16_t* depth, int every, int samples, float product, float* disparity
+    const std::uint16_t* depth, int samples, float product, float* disparity
 ) {
     for (int i = 0; i < samples; ++i) {
-        const auto counts = static_cast<float>(static_cast<int>(depth[every * i]));
+        const auto counts = static_cast<float>(static_cast<int>(depth[kEvery * i]));
         disparity[i] = counts > 0.0F ? product / counts : 0.0F;
     }
 }
@@ -72,17 +71,14 @@ Result<void> check(std::size_t pixels, int width, std::size_t room) {
     return {};
 }
 
-/// The readings of every so many columns.
-std::vector<float> thinned(
-    std::span<const std::uint16_t> depth, int width, int every, float product
-) {
-    const int samples = (width + every - 1) / every;
+/// Every kEvery-th reading of each row.
+std::vector<float> thinned(std::span<const std::uint16_t> depth, int width, float product) {
+    const int samples = (width + kEvery - 1) / kEvery;
     const auto rows = depth.size() / static_cast<std::size_t>(width);
     std::vector<float> disparity(rows * static_cast<std::size_t>(samples));
     for (std::size_t v = 0; v < rows; ++v)
         sample_disparity(
             depth.data() + v * static_cast<std::size_t>(width),
-            every,
             samples,
             product,
             disparity.data() + v * static_cast<std::size_t>(samples)
@@ -100,12 +96,9 @@ Result<DepthPass> pass_nearer_than_wall(
 ) {
     if (auto ok = check(depth.size(), width, near.size()); !ok) return tl::unexpected(ok.error());
     const auto product = static_cast<float>(scale.product);
+    const int samples = (width + kEvery - 1) / kEvery;
     DepthPass pass;
-    pass.cut = level_wall_cut(thinned(depth, width, kSparse, product));
-    if (!pass.cut) {
-        const auto dense = thinned(depth, width, kDense, product);
-        pass.cut = wall_cut(dense, (width + kDense - 1) / kDense, kDense);
-    }
+    pass.cut = wall_cut(thinned(depth, width, product), samples, kEvery);
     if (!pass.cut || pass.cut->level()) {
         if (pass.cut) pass.farthest = farthest_of(*pass.cut, scale);
         keep_nearer(depth.data(), depth.size(), pass.farthest, near.data());
