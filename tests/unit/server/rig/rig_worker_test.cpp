@@ -247,7 +247,7 @@ TEST_F(RigWorkerTest, ABobThatIsNotLetGoFailsTheRun) {
     ASSERT_TRUE(step_until_state(RunState::ready));
     rig_.deaf = true;
     ASSERT_TRUE(command(RunEvent::release_commanded));
-    ASSERT_TRUE(step_until_state(RunState::failed, 10.0));
+    ASSERT_TRUE(step_until_state(RunState::failed, 20.0));
     EXPECT_NE(run().reason.find("release"), std::string::npos);
 }
 
