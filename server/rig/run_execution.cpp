@@ -133,6 +133,10 @@ void RunExecution::track(RunState state, TimeNs now, const RgbdFrame& frame, std
     // The camera may deliver a picture a little late: what it took before the release is no part
     // of the measurement.
     const bool counts = state == RunState::measuring && frame.t >= run_.started.value();
+    if (counts) {
+        if (frames_ > 0) frames_lost_ += missed;
+        ++frames_;
+    }
     for (const Observed& object : *observed) {
         rig_.bus.publish(bus::PoseMeasured{
             run_.rig,
@@ -142,11 +146,11 @@ void RunExecution::track(RunState state, TimeNs now, const RgbdFrame& frame, std
             missed});
         if (!counts) continue;
         samples_[object.object].push_back(object.track);
-        rig_.writer.append(run_.id, {object.object, object.motion});
+        rig_.writer.append(
+            run_.id, {object.object, object.motion}, store::FrameCounts{frames_, frames_lost_}
+        );
     }
     if (!counts) return;
-    if (frames_ > 0) frames_lost_ += missed;
-    ++frames_;
     if (frame.t - run_.started.value() >= from_seconds(run_.duration_s)) {
         advance(RunEvent::measured, now, "The duration is over");
     }
