@@ -241,7 +241,9 @@ Result<lab::Run> RigWorker::start(
             ErrorCode::conflict, "rig", "is busy with another run", "wait until it is over"
         );
     }
-    auto stored = store_.runs.add(run);
+    lab::Run wish = run;
+    wish.release_until = ready_until;
+    auto stored = store_.runs.add(wish);
     if (!stored) return stored;
     active_.begin(*stored);
     order_ = RunOrder{*stored, std::move(objects), ready_until};
