@@ -84,7 +84,13 @@ std::optional<NewAccount> add_first_admin(store::UserRepository& users, TimeNs n
         return user.role == lab::Role::admin;
     };
     if (std::any_of(all.begin(), all.end(), is_admin)) return std::nullopt;
-    auto account = add_account(users, "admin", "Administrator", lab::Role::admin, now);
+    const auto taken = [&](const std::string& name) {
+        return users.credentials(name).has_value();
+    };
+    std::string name = "admin";
+    for (int i = 2; taken(name); ++i)
+        name = "admin-" + std::to_string(i);
+    auto account = add_account(users, name, "Administrator", lab::Role::admin, now);
     if (!account)
         throw std::runtime_error("cannot make the first account: " + to_text(account.error()));
     return std::move(*account);

@@ -30,7 +30,8 @@ struct NewAccount {
     store::UserRepository& users, const std::string& username
 );
 
-/// The account "admin", if there is no administrator yet: the first start of a laboratory.
+/// An administrator, if there is none yet: the first start of a laboratory. The account is "admin",
+/// or "admin-2" and so on where somebody else has that name.
 [[nodiscard]] std::optional<NewAccount> add_first_admin(store::UserRepository& users, TimeNs now);
 
 }  // namespace kinectlab::auth
