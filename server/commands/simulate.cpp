@@ -21,6 +21,7 @@ using experiments::Values;
 
 // Simulated recordings all begin on 2026-01-01 00:00 UTC: the same seed gives the same files.
 constexpr TimeNs kStart = 1'767'225'600 * kNsPerSecond;
+constexpr double kAboutToDisplace = 2.0;  // s
 
 struct Arguments {
     std::string experiment;
@@ -84,7 +85,7 @@ Result<SourceInfo> describe(const simulate::RunSettings& run, const std::string&
 Result<simulate::RunSummary> record(
     const simulate::RunSettings& run, SequenceWriter& writer, const Values& values
 ) {
-    const double about = run.rest_s + run.held_s + run.seconds + 1.0;
+    const double about = run.rest_s + run.held_s + run.seconds + kAboutToDisplace;
     Progress progress("frames", static_cast<std::size_t>(about * simulate::kFrameRateHz));
     auto summary =
         simulate::simulate_run(run, [&](const RgbdFrame& frame, const simulate::Truth& truth) {
