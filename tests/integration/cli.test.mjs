@@ -128,6 +128,7 @@ describe('a simulated pendulum', () => {
   test('is analysed with the length that its experiment.json tells', () => {
     const result = json(kinectlab('analyse', 'pendulum', recording));
     assert.equal(result.parameters.length_m, 0.9);
+    assert.ok(!result.warnings.some((text) => /Earth's ground/.test(text)), 'a set gravity is no surprise');
     assert.equal(result.parameters.gravity, undefined, 'the truth is no parameter of the analysis');
   });
 
