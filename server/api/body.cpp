@@ -47,7 +47,16 @@ Result<json> read_body(const net::Request& request) {
             "send JSON with Content-Type: application/json"
         );
     }
-    return experiments::parse_json(request.body, "body");
+    auto body = experiments::parse_json(request.body, "body");
+    if (body && !body->is_object()) {
+        return fail(
+            ErrorCode::invalid_argument,
+            "body",
+            std::string("is of type ") + body->type_name(),
+            "send a JSON object"
+        );
+    }
+    return body;
 }
 
 std::optional<TimeNs> parse_time(const std::string& text) {

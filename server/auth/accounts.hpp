@@ -16,7 +16,12 @@ struct NewAccount {
 };
 
 /// User names are 2 to 32 of a-z, 0-9, dot, dash, underscore and begin with a letter; display names
-/// 1 to 64 characters. Errors name `username` or `display_name`; conflict if the name is taken.
+/// 1 to 64 characters. Errors name `username` or `display_name`.
+[[nodiscard]] Result<void> check_names(
+    const std::string& username, const std::string& display_name
+);
+
+/// Errors as of check_names(); conflict if the name is taken.
 [[nodiscard]] Result<NewAccount> add_account(
     store::UserRepository& users,
     const std::string& username,

@@ -1,3 +1,4 @@
+#include <charconv>
 #include <cmath>
 #include <numbers>
 
@@ -32,6 +33,15 @@ struct Arguments {
     std::vector<std::string> settings;
 };
 
+// CLI11 lets a minus through to unsigned numbers and takes the largest for one that is too large.
+std::string check_seed(const std::string& word) {
+    std::uint64_t seed = 0;
+    const char* end = word.data() + word.size();
+    const auto read = std::from_chars(word.data(), end, seed);
+    if (read.ec == std::errc() && read.ptr == end) return {};
+    return "is " + word.substr(0, 40) + "; give a whole number from 0 to 18446744073709551615";
+}
+
 std::optional<int> parse(int argc, char** argv, Arguments& arguments) {
     CLI::App app(
         "Records a simulated experiment as a folder in the TUM RGB-D layout: at rest for two "
@@ -42,8 +52,9 @@ std::optional<int> parse(int argc, char** argv, Arguments& arguments) {
         ->required();
     app.add_option("--out", arguments.out, "new folder for the recording")->required();
     app.add_option("--seconds", arguments.seconds, "of free motion (default: duration_s)")
-        ->check(CLI::Range(0.1, 3600.0));
+        ->check(check_number(0.1, 3600.0));
     app.add_option("--seed", arguments.seed, "of the noise; the same seed gives the same files")
+        ->check(check_seed)
         ->capture_default_str();
     app.add_option("--noise", arguments.noise, "none, khoshelham or kinect")->capture_default_str();
     app.add_option("--set", arguments.settings, "a parameter, NAME=VALUE; may be repeated")

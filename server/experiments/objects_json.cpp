@@ -85,7 +85,8 @@ Result<std::vector<ObjectSpec>> read_objects(const nlohmann::json& document) {
 
 Result<std::vector<ObjectSpec>> load_objects(const std::filesystem::path& file) {
     return read_json_file(file).and_then(read_objects).map_error([&](Error error) {
-        if (error.field != file.string()) error.field = file.string() + ": " + error.field;
+        if (error.field == file.string()) return error;
+        error.field = file.string() + (error.field.empty() ? "" : ": " + error.field);
         return error;
     });
 }

@@ -26,8 +26,8 @@ test('whatever is wrong with a booking is named, and nothing is stored', async (
     [{ ...good, experiment: 'volcano' }, 'experiment'],
     [{ ...good, colour: 'red' }, 'colour'],
     [{ rig: 'rig-1', experiment: 'pendulum', start: good.start }, 'end'],
-    [[good], undefined],
-    [null, undefined],
+    [[good], 'body'],
+    [null, 'body'],
   ];
   for (const [body, field] of wrong) assertProblem(await student.post('/bookings', body === null ? 'null' : body), 422, field);
   assert.deepEqual((await student.get('/bookings')).body.bookings, []);
