@@ -25,7 +25,7 @@ Measurement named(const std::vector<Measurement>& all, std::string_view name) {
 /// More of the variance from the scatter of this one run than from all else.
 bool statistics_dominate(const Measurement& m) {
     const auto it = std::find_if(m.budget.begin(), m.budget.end(), [](const auto& line) {
-        return line.name == "statistics";
+        return line.source == "statistics";
     });
     return it != m.budget.end() && it->u * it->u > 0.5 * m.u * m.u;
 }
