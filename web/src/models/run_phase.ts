@@ -25,6 +25,8 @@ export interface Situation {
   /** Whether the viewer may command this run: it is theirs, or they assist. */
   mayCommand: boolean;
   now: number;
+  /** As `releaseLeft` tells it. */
+  releaseLeft?: number | null;
 }
 
 const underWay: RunState[] = ['preparing', 'ready', 'releasing', 'measuring', 'analysing'];
@@ -76,7 +78,7 @@ function underWayPhase(run: Run, s: Situation): Phase {
       return { ...wait('active', 'The rig is getting ready: it stops the bob, looks at the empty scene and lifts the bob to its angle.', 'Preparing …'), abortable: mine };
     case 'ready':
       return mine
-        ? { sentence: 'The bob is held at its angle. Release it when you are ready.', tone: 'ready', action: 'release', label: 'Release', abortable: true }
+        ? { sentence: `The bob is held at its angle. ${releaseCall(s.releaseLeft)}`, tone: 'ready', action: 'release', label: 'Release', abortable: true }
         : wait('ready', 'The bob is held at its angle and waits to be released.', 'Ready');
     case 'releasing':
       return { ...wait('active', 'The magnet lets go of the bob …', 'Releasing …'), abortable: mine };
@@ -87,6 +89,19 @@ function underWayPhase(run: Run, s: Situation): Phase {
     default:
       return { ...wait('active', 'The motion is measured. The fit of the pendulum is being made …', 'Analysing …'), abortable: mine };
   }
+}
+
+/** How long a bob that is held still waits to be released, ms; null where nothing waits or the server does not say. */
+export function releaseLeft(run: Run | null, now: number): number | null {
+  const until = run?.state === 'ready' && run.release_until ? Date.parse(run.release_until) : NaN;
+  return Number.isFinite(until) ? Math.max(0, until - now) : null;
+}
+
+/** Changes once only: it is read out whenever it changes. The seconds are counted beside the button. */
+function releaseCall(left: number | null | undefined): string {
+  return typeof left === 'number' && left <= minute
+    ? 'Release it within a minute, or the run ends without a measurement.'
+    : 'Release it when you are ready.';
 }
 
 /** How far the measurement is: seconds done and in all; null while nothing is measured. */

@@ -1,6 +1,6 @@
 import { describe, expect, it } from 'vitest';
 import type { Booking, Rig, Run, RunState } from '../../src/api/types';
-import { endSentence, phaseOf, progress, type Situation } from '../../src/models/run_phase';
+import { endSentence, phaseOf, progress, releaseLeft, type Situation } from '../../src/models/run_phase';
 
 const now = Date.parse('2026-11-22T09:10:00Z');
 const rig: Rig = {
@@ -81,4 +81,27 @@ it('knows how far the measurement is', () => {
 it('says how a run ended, with the reason as a sentence', () => {
   expect(endSentence(run('failed', { reason: 'fewer than three periods' }))).toBe('The run failed. Fewer than three periods.');
   expect(endSentence(run('interrupted'))).toContain('The laboratory was restarted.');
+});
+
+describe('the time to release the bob', () => {
+  const until = '2026-11-22T09:15:00Z';
+
+  it('counts down while the bob is held, and only then', () => {
+    expect(releaseLeft(run('ready', { release_until: until }), now)).toBe(300_000);
+    expect(releaseLeft(run('ready', { release_until: until }), Date.parse(until) + 2000)).toBe(0);
+    expect(releaseLeft(run('measuring', { release_until: until }), now)).toBeNull();
+    expect(releaseLeft(null, now)).toBeNull();
+  });
+
+  it('is not spoken of where the server does not tell it', () => {
+    for (const release_until of [null, 'soon']) expect(releaseLeft(run('ready', { release_until }), now)).toBeNull();
+    expect(releaseLeft(run('ready'), now)).toBeNull();
+  });
+
+  it('changes the sentence once, in the last minute', () => {
+    const sentence = (left: number | null) => phaseOf(situation({ run: run('ready'), releaseLeft: left })).sentence;
+    expect(sentence(null)).toBe(sentence(299_000));
+    expect(sentence(59_000)).toContain('within a minute');
+    expect(sentence(1_000)).toBe(sentence(59_000));
+  });
 });
