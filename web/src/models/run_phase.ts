@@ -1,6 +1,7 @@
 /** What a run is doing, said in a sentence, and the one thing to do about it. */
 import type { Booking, Rig, Run, RunState } from '../api/types';
-import { clockTime, duration, minute, slotText } from './time';
+import { clockTime, duration, localTimes, minute, second, slotText } from './time';
+import { inWords } from './words';
 import { bookingInterval } from './slots';
 
 export type Action = 'prepare' | 'release' | 'stop' | 'result' | 'book' | 'wait';
@@ -115,7 +116,7 @@ export function progress(run: Run | null, now: number): { done: number; total: n
 
 /** How a run ended, as a sentence. */
 export function endSentence(run: Run): string {
-  const why = run.reason ? ` ${sentenceCase(run.reason)}` : '';
+  const why = run.reason ? ` ${sentenceCase(reasonText(run, run.reason))}` : '';
   switch (run.state) {
     case 'completed':
       return 'The run is complete.';
@@ -128,6 +129,21 @@ export function endSentence(run: Run): string {
     default:
       return 'The run is under way.';
   }
+}
+
+/** Why it ended, in a student's words. */
+function reasonText(run: Run, reason: string): string {
+  // The analysis says what it lacks; that somebody pressed Stop is what one can do something about.
+  if (run.state === 'failed' && /^samples:/i.test(reason) && stoppedEarly(run)) {
+    return 'Stop came too early for a result: let the bob swing for three periods or more';
+  }
+  return localTimes(inWords(reason.replace(/^[a-z]\w*(\.\w+)*: /, '')));
+}
+
+function stoppedEarly(run: Run): boolean {
+  const wanted = run.parameters['duration_s'] ?? run.duration_s;
+  if (!wanted || !run.started_at || !run.ended_at) return false;
+  return Date.parse(run.ended_at) - Date.parse(run.started_at) < wanted * second - 2 * second;
 }
 
 const stateWords: Record<RunState, string> = {

@@ -105,3 +105,23 @@ describe('the time to release the bob', () => {
     expect(sentence(1_000)).toBe(sentence(59_000));
   });
 });
+
+describe('why a run ended', () => {
+  const few = 'samples: the object was seen in 9 of 9 frames; at least 30 are needed, over three periods or more';
+
+  it('says that Stop came too early where it did', () => {
+    const early = run('failed', { reason: few, ended_at: '2026-11-22T09:09:52Z' });
+    expect(endSentence(early)).toContain('Stop came too early');
+    expect(endSentence(early)).not.toMatch(/samples/i);
+  });
+
+  it('blames nobody where the run went to its end', () => {
+    const whole = run('failed', { reason: few, ended_at: '2026-11-22T09:10:25Z' });
+    expect(endSentence(whole)).toContain('The object was seen in 9 of 9 frames');
+  });
+
+  it('names no field', () => {
+    expect(endSentence(run('failed', { reason: 'parameters.length_m: length_m is not what the arc says' })))
+      .toBe('The run failed. The length of the pendulum is not what the arc says.');
+  });
+});
