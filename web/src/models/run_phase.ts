@@ -160,6 +160,13 @@ const stateWords: Record<RunState, string> = {
 
 export const stateWord = (state: RunState): string => stateWords[state] ?? state;
 
+const order = Object.keys(stateWords);
+
+/** Whether `a` tells of an earlier moment than `b`: of an earlier run, or of an earlier state of the same. */
+export function isOlder(a: Run, b: Run): boolean {
+  return a.id < b.id || (a.id === b.id && order.indexOf(a.state) < order.indexOf(b.state));
+}
+
 function endedInSlot(run: Run, slot: Booking | null): boolean {
   return slot !== null && Date.parse(run.created_at) >= bookingInterval(slot).start;
 }

@@ -1,6 +1,6 @@
 import { describe, expect, it } from 'vitest';
 import type { Booking, Rig, Run, RunState } from '../../src/api/types';
-import { endSentence, phaseOf, progress, releaseLeft, type Situation } from '../../src/models/run_phase';
+import { endSentence, isOlder, phaseOf, progress, releaseLeft, type Situation } from '../../src/models/run_phase';
 
 const now = Date.parse('2026-11-22T09:10:00Z');
 const rig: Rig = {
@@ -123,5 +123,15 @@ describe('why a run ended', () => {
   it('names no field', () => {
     expect(endSentence(run('failed', { reason: 'parameters.length_m: length_m is not what the arc says' })))
       .toBe('The run failed. The length of the pendulum is not what the arc says.');
+  });
+});
+
+describe('two tellings of a run', () => {
+  it('takes the later moment, whichever comes first', () => {
+    expect(isOlder(run('releasing'), run('measuring'))).toBe(true);
+    expect(isOlder(run('measuring'), run('releasing'))).toBe(false);
+    expect(isOlder(run('ready'), run('ready'))).toBe(false);
+    expect(isOlder(run('completed', { id: 6 }), run('preparing'))).toBe(true);
+    expect(isOlder(run('preparing', { id: 8 }), run('completed'))).toBe(false);
   });
 });
