@@ -12,6 +12,11 @@ namespace kinectlab {
 constexpr double kLeastOnEarth = 9.76;  ///< m/s², g on high mountains near the equator
 constexpr double kMostOnEarth = 9.84;   ///< m/s², at the poles' sea
 
+/// Whether g (m/s²), known to `within`, can be that of a place on the Earth's ground.
+[[nodiscard]] constexpr bool is_earthly(double g, double within = 0.0) {
+    return g >= kLeastOnEarth - within && g <= kMostOnEarth + within;
+}
+
 struct PendulumSettings {
     double length_m = 1.0;        ///< pivot to the bob's centre
     double length_u_m = 0.0005;   ///< its standard uncertainty

@@ -110,9 +110,7 @@ std::vector<std::string> swing_warnings(
             "right?",
             fit.parameters.tilt.norm() / kDegree
         ));
-    const bool earthly =
-        g.value >= kLeastOnEarth - 4.0 * g.u && g.value <= kMostOnEarth + 4.0 * g.u;
-    if (settings.on_earth && !earthly)
+    if (settings.on_earth && !is_earthly(g.value, 4.0 * g.u))
         warnings.push_back(fmt::format(
             "g = {:.3f} m/s² is not found on the Earth's ground ({} to {} m/s²); is the length "
             "right?",

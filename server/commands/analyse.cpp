@@ -50,8 +50,7 @@ std::optional<int> parse(int argc, char** argv, Arguments& arguments) {
 
 bool on_earth(const Values& truth) {
     const auto gravity = truth.find("gravity");
-    return gravity == truth.end() ||
-           (gravity->second >= kLeastOnEarth && gravity->second <= kMostOnEarth);
+    return gravity == truth.end() || is_earthly(gravity->second);
 }
 
 PendulumSettings pendulum_settings(const Values& values, const RgbdCamera& camera) {

@@ -221,9 +221,10 @@ Result<lab::Run> RigService::start_run(
             .definition_json = experiments::to_json(*definition).dump(),
             .duration_s = duration_s,
             .created = now,
+            .release_until =
+                std::min(now + kReadyAtMost, booking->slot.end - from_seconds(duration_s)),
         },
-        experiments::objects_for(*definition, *values),
-        std::min(now + kReadyAtMost, booking->slot.end - from_seconds(duration_s))
+        experiments::objects_for(*definition, *values)
     );
 }
 

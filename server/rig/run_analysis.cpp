@@ -114,8 +114,6 @@ Result<RunAnalysis> analyse_run(
     }
     const RgbdCamera& camera = measured.source.camera;
     const PendulumSettings defaults;
-    // Only a simulated rig has it as a parameter.
-    const double gravity = parameter(run, "gravity", kLeastOnEarth);
     const auto result = analyse_pendulum(
         trajectories.front(),
         {
@@ -125,7 +123,8 @@ Result<RunAnalysis> analyse_run(
             .latitude_deg = parameter(run, "latitude_deg", defaults.latitude_deg),
             .depth_scale_u = camera.depth_scale_u,
             .clock_u = camera.clock_u,
-            .on_earth = gravity >= kLeastOnEarth && gravity <= kMostOnEarth,
+            // Only a simulated rig has it as a parameter.
+            .on_earth = is_earthly(parameter(run, "gravity", kLeastOnEarth)),
         }
     );
     if (!result) return tl::unexpected(result.error());

@@ -34,13 +34,9 @@ bool needs_frames(RunState state) {
 }  // namespace
 
 RunExecution::RunExecution(
-    RunSurroundings rig,
-    const lab::Run& run,
-    TimeNs ready_until,
-    TimeNs now,
-    const RunLimits& limits
+    RunSurroundings rig, const lab::Run& run, TimeNs now, const RunLimits& limits
 )
-    : rig_(rig), run_(run), ready_until_(ready_until), limits_(limits), last_frame_at_(now) {}
+    : rig_(rig), run_(run), limits_(limits), last_frame_at_(now) {}
 
 void RunExecution::step(TimeNs now, const RgbdFrame* frame, std::uint32_t missed) {
     if (frame != nullptr) last_frame_at_ = now;
@@ -168,7 +164,7 @@ void RunExecution::watch(RunState state, TimeNs now) {
     if (auto error = rig_.writer.take_error()) {
         return fail_run(now, {ErrorCode::unavailable, "", "poses could not be stored: " + *error});
     }
-    if (state == RunState::ready && now >= ready_until_) {
+    if (state == RunState::ready && run_.release_until && now >= *run_.release_until) {
         advance(RunEvent::abort, now, "Nobody released the bob in time");
     } else if (state == RunState::releasing) {
         await_release(now);
