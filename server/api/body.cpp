@@ -152,6 +152,14 @@ Result<void> check_query(const net::Request& request, const std::vector<std::str
             names.empty() ? "leave it out" : "did you mean " + nearest_name(name, names) + "?"
         );
     }
+    if (!request.repeated.empty()) {
+        return fail(
+            ErrorCode::invalid_argument,
+            request.repeated.substr(0, 40),
+            "stands in the address twice",
+            "give it once"
+        );
+    }
     return {};
 }
 

@@ -12,6 +12,7 @@ Figures measure_gravity_from_positions();
 Figures measure_gravity_khoshelham();
 Figures measure_gravity_kinect();
 Figures measure_live_latency();
+Figures measure_rendering();
 
 /// Everything that can be measured. To add something: declare it above and name it here with the
 /// figures it yields, so that --filter can pass over what is not wanted.
@@ -27,6 +28,7 @@ inline constexpr std::array kMeasurements{
     Measurement{"g, khoshelham noise", measure_gravity_khoshelham},
     Measurement{"g, kinect noise", measure_gravity_kinect},
     Measurement{"live: capture to pose at a WebSocket client, frames lost", measure_live_latency},
+    Measurement{"rendering a rig", measure_rendering},
 };
 
 }  // namespace kinectlab::bench

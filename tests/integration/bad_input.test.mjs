@@ -108,6 +108,8 @@ test('addresses and queries that make no sense', async (t) => {
   }
   assertProblem(await admin.get('/runs?limit=0'), 422, 'limit');
   assertProblem(await admin.get('/runs?limit=ten'), 422, 'limit');
+  assertProblem(await admin.get('/runs?limit=1&limit=2'), 422, 'limit');
+  assertProblem(await admin.get('/runs?rig=nope'), 422, 'rig');
   assertProblem(await admin.get('/runs?before=-3'), 422, 'before');
   assertProblem(await admin.get('/runs?mine=perhaps'), 422, 'mine');
   assertProblem(await admin.get('/runs?user=3'), 422, 'user');
