@@ -9,6 +9,14 @@
 
 namespace kinectlab {
 
+constexpr double kLeastOnEarth = 9.76;  ///< m/s², g on high mountains near the equator
+constexpr double kMostOnEarth = 9.84;   ///< m/s², at the poles' sea
+
+/// Whether g (m/s²), known to `within`, can be that of a place on the Earth's ground.
+[[nodiscard]] constexpr bool is_earthly(double g, double within = 0.0) {
+    return g >= kLeastOnEarth - within && g <= kMostOnEarth + within;
+}
+
 struct PendulumSettings {
     double length_m = 1.0;        ///< pivot to the bob's centre
     double length_u_m = 0.0005;   ///< its standard uncertainty
@@ -16,6 +24,7 @@ struct PendulumSettings {
     double latitude_deg = 45.0;   ///< of the rig, for the turning of the swing plane
     double depth_scale_u = 1e-3;  ///< relative
     double clock_u = 2e-5;        ///< relative
+    bool on_earth = true;         ///< false where a simulation took another g on purpose
 };
 
 /// The fitted motion at the samples' times, for plots.

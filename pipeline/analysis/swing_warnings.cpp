@@ -14,11 +14,20 @@ namespace {
 
 constexpr double kFrame = 0.05;  // s
 constexpr double kDegree = std::numbers::pi / 180.0;
+constexpr double kFewPeriods = 10.0;
 
 Measurement named(const std::vector<Measurement>& all, std::string_view name) {
     const auto it =
         std::find_if(all.begin(), all.end(), [&](const auto& m) { return m.name == name; });
     return it == all.end() ? Measurement{} : *it;
+}
+
+/// More of the variance from the scatter of this one run than from all else.
+bool statistics_dominate(const Measurement& m) {
+    const auto it = std::find_if(m.budget.begin(), m.budget.end(), [](const auto& line) {
+        return line.source == "statistics";
+    });
+    return it != m.budget.end() && it->u * it->u > 0.5 * m.u * m.u;
 }
 
 }  // namespace
@@ -43,7 +52,8 @@ std::vector<std::string> swing_warnings(
         warnings.push_back(fmt::format(
             "The last {:.1f} s were not a free swing and were left out.", left_out_after
         ));
-    if (periods < 10.0)
+    const Measurement g = named(measurements, "g");
+    if (periods < kFewPeriods && statistics_dominate(g))
         warnings.push_back(fmt::format(
             "Only {:.1f} periods were recorded; ten or more give a much better g.", periods
         ));
@@ -89,7 +99,8 @@ std::vector<std::string> swing_warnings(
     const double radius_u = std::hypot(fit.free_radius_u, swing_priors(settings).radius_sigma);
     if (radius_off > 4.0 * radius_u && radius_off > 0.03 * settings.length_m)
         warnings.push_back(fmt::format(
-            "The arc's radius is {:.2f} m but length_m says {:.2f} m; g rests on length_m.",
+            "The arc's radius is {:.2f} m but the length given is {:.2f} m; g rests on that "
+            "length.",
             fit.free_radius,
             settings.length_m
         ));
@@ -99,12 +110,13 @@ std::vector<std::string> swing_warnings(
             "right?",
             fit.parameters.tilt.norm() / kDegree
         ));
-    const Measurement g = named(measurements, "g");
-    if (g.value < 9.76 - 4.0 * g.u || g.value > 9.84 + 4.0 * g.u)
+    if (settings.on_earth && !is_earthly(g.value, 4.0 * g.u))
         warnings.push_back(fmt::format(
-            "g = {:.3f} m/s² is not found on the Earth's ground (9.76 to 9.84 m/s²); is length_m "
+            "g = {:.3f} m/s² is not found on the Earth's ground ({} to {} m/s²); is the length "
             "right?",
-            g.value
+            g.value,
+            kLeastOnEarth,
+            kMostOnEarth
         ));
     const Measurement damping = named(measurements, "damping");
     if (damping.value < -4.0 * damping.u)

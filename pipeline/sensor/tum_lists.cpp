@@ -121,8 +121,9 @@ Result<std::vector<TumEntry>> read_tum_list(const fs::path& folder, const std::s
             return wrong_line(
                 path,
                 number,
-                "leads out of the recording: " + words[1].substr(0, 200),
-                "give a path inside " + folder.string()
+                "leads out of the recording (itself or by a symbolic link): " +
+                    words[1].substr(0, 200),
+                "put the pictures themselves into " + folder.string()
             );
         }
         std::error_code code;

@@ -47,7 +47,16 @@ Result<json> read_body(const net::Request& request) {
             "send JSON with Content-Type: application/json"
         );
     }
-    return experiments::parse_json(request.body, "body");
+    auto body = experiments::parse_json(request.body, "body");
+    if (body && !body->is_object()) {
+        return fail(
+            ErrorCode::invalid_argument,
+            "body",
+            std::string("is of type ") + body->type_name(),
+            "send a JSON object"
+        );
+    }
+    return body;
 }
 
 std::optional<TimeNs> parse_time(const std::string& text) {
@@ -141,6 +150,14 @@ Result<void> check_query(const net::Request& request, const std::vector<std::str
             name.substr(0, 40),
             "is no parameter of this address",
             names.empty() ? "leave it out" : "did you mean " + nearest_name(name, names) + "?"
+        );
+    }
+    if (!request.repeated.empty()) {
+        return fail(
+            ErrorCode::invalid_argument,
+            request.repeated.substr(0, 40),
+            "stands in the address twice",
+            "give it once"
         );
     }
     return {};

@@ -4,6 +4,7 @@
 #include <functional>
 #include <vector>
 
+#include "server/auth/live_sessions.hpp"
 #include "server/auth/live_tickets.hpp"
 #include "server/auth/sign_in.hpp"
 #include "server/experiments/definition.hpp"
@@ -22,6 +23,7 @@ struct Context {
     live::JpegCache& jpegs;
     auth::SignIn& sign_in;
     auth::LiveTickets& tickets;
+    auth::LiveSessions& live_sessions;
     std::vector<experiments::Definition> definitions;
     std::filesystem::path description;  ///< openapi.json
     std::function<TimeNs()> now;

@@ -15,7 +15,7 @@ constexpr TimeNs kLongestList = 62 * kDay;
 
 net::Response no_such_rig(const std::string& rig) {
     return problem(
-        404, "there is no rig '" + rig.substr(0, 40) + "'", "GET /api/v1/rigs lists them"
+        404, "there is no rig '" + rig.substr(0, 40) + "'", "choose one from the list of rigs"
     );
 }
 
@@ -35,6 +35,9 @@ net::Response get_rig(const Call& call) {
 
 net::Response get_camera_picture(const Call& call) {
     const auto picture = call.context.rigs.picture(call.parameter("rig"));
+    if (!picture && picture.error().code == ErrorCode::not_found) {
+        return no_such_rig(call.parameter("rig"));
+    }
     if (!picture) return to_response(picture.error());
     const auto packet = call.context.jpegs.packet(*picture);
     return {

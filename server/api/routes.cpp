@@ -89,7 +89,7 @@ std::optional<net::Response> refuse(
         return to_response(403, error);
     }
     if (who->user.must_change_password && entry.access != Access::new_here) {
-        return problem(403, "your password is good for one sign-in only", "choose a new one first");
+        return problem(403, "a one-time password only lets you choose your own", "choose it first");
     }
     if (entry.access == Access::admin && !lab::at_least(who->user.role, Role::admin)) {
         return problem(403, "only an administrator may do this");

@@ -24,6 +24,17 @@ TimeNs zero_of(const lab::Run& run) {
     return run.started.value_or(run.created);
 }
 
+net::Response no_result(const lab::Run& run) {
+    if (!lab::is_final(run.state)) {
+        return problem(404, "this run has no result yet", "wait until its analysis is over");
+    }
+    return problem(
+        404,
+        "this run has no result: it was " + std::string(lab::to_text(run.state)),
+        "its poses are kept; measure again for a result"
+    );
+}
+
 }  // namespace
 
 net::Response get_poses(const Call& call) {
@@ -53,10 +64,9 @@ net::Response get_poses_csv(const Call& call) {
 net::Response get_fit(const Call& call) {
     auto found = visible_run(call);
     if (auto* refusal = std::get_if<net::Response>(&found)) return std::move(*refusal);
-    const auto result = call.context.store.results.latest(std::get<lab::Run>(found).id);
-    if (!result) {
-        return problem(404, "this run has no result", "wait until its analysis is over");
-    }
+    const auto& run = std::get<lab::Run>(found);
+    const auto result = call.context.store.results.latest(run.id);
+    if (!result) return no_result(run);
     return json_response(200, json::parse(result->fit_json));
 }
 

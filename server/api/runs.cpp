@@ -84,6 +84,15 @@ net::Response get_runs(const Call& call) {
     filter.limit = count + 1;  // one more tells whether there is a next page
 
     auto found = call.context.store.runs.list(filter);
+    // The runs of a rig that was taken away stay readable; a name that never was one is a slip.
+    if (found.empty() && filter.rig && !call.context.rigs.find(*filter.rig, call.now)) {
+        return to_response(
+            {ErrorCode::invalid_argument,
+             "rig",
+             "is '" + filter.rig->substr(0, 40) + "'; there is no such rig",
+             "give one from the list of rigs"}
+        );
+    }
     const bool more = found.size() > static_cast<std::size_t>(count);
     if (more) found.pop_back();
     json runs = json::array();

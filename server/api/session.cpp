@@ -54,6 +54,7 @@ net::Response get_session(const Call& call) {
 
 net::Response delete_session(const Call& call) {
     call.context.sign_in.sign_out(call.who);
+    call.context.live_sessions.look();
     net::Response response = no_content();
     response.headers.push_back(session_cookie("", 0));
     return response;
@@ -70,7 +71,10 @@ net::Response put_password(const Call& call) {
     const auto session = call.context.sign_in.change_password(
         call.who, current, replacement, call.request.remote_address, call.now
     );
-    if (session) return signed_in(*session);
+    if (session) {
+        call.context.live_sessions.look();
+        return signed_in(*session);
+    }
     if (session.error().code == ErrorCode::unavailable) return to_response(429, session.error());
     return to_response(session.error());
 }

@@ -69,6 +69,7 @@ json booking_json(const lab::Booking& booking, const lab::User& viewer) {
 }
 
 json to_json(const lab::Run& run) {
+    const bool waits = run.state == lab::RunState::ready;
     return {
         {"id", run.id},
         {"rig", run.rig},
@@ -78,6 +79,7 @@ json to_json(const lab::Run& run) {
         {"reason", run.reason},
         {"parameters", run.parameters},
         {"created_at", lab::to_rfc3339(run.created)},
+        {"release_until", time_or_null(waits ? run.release_until : std::nullopt)},
         {"started_at", time_or_null(run.started)},
         {"ended_at", time_or_null(run.ended)},
         {"duration_s", run.duration_s},

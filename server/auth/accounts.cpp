@@ -46,6 +46,11 @@ Result<void> check_display_name(const std::string& name) {
 
 }  // namespace
 
+Result<void> check_names(const std::string& username, const std::string& display_name) {
+    if (auto ok = check_username(username); !ok) return ok;
+    return check_display_name(display_name);
+}
+
 Result<NewAccount> add_account(
     store::UserRepository& users,
     const std::string& username,
@@ -53,8 +58,7 @@ Result<NewAccount> add_account(
     lab::Role role,
     TimeNs now
 ) {
-    if (auto ok = check_username(username); !ok) return tl::unexpected(ok.error());
-    if (auto ok = check_display_name(display_name); !ok) return tl::unexpected(ok.error());
+    if (auto ok = check_names(username, display_name); !ok) return tl::unexpected(ok.error());
     std::string password = make_one_time_password();
     store::NewUser record{username, display_name, role, hash_password(password), true};
     auto user = users.add(record, now);
@@ -84,7 +88,13 @@ std::optional<NewAccount> add_first_admin(store::UserRepository& users, TimeNs n
         return user.role == lab::Role::admin;
     };
     if (std::any_of(all.begin(), all.end(), is_admin)) return std::nullopt;
-    auto account = add_account(users, "admin", "Administrator", lab::Role::admin, now);
+    const auto taken = [&](const std::string& name) {
+        return users.credentials(name).has_value();
+    };
+    std::string name = "admin";
+    for (int i = 2; taken(name); ++i)
+        name = "admin-" + std::to_string(i);
+    auto account = add_account(users, name, "Administrator", lab::Role::admin, now);
     if (!account)
         throw std::runtime_error("cannot make the first account: " + to_text(account.error()));
     return std::move(*account);

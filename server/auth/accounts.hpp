@@ -16,7 +16,12 @@ struct NewAccount {
 };
 
 /// User names are 2 to 32 of a-z, 0-9, dot, dash, underscore and begin with a letter; display names
-/// 1 to 64 characters. Errors name `username` or `display_name`; conflict if the name is taken.
+/// 1 to 64 characters. Errors name `username` or `display_name`.
+[[nodiscard]] Result<void> check_names(
+    const std::string& username, const std::string& display_name
+);
+
+/// Errors as of check_names(); conflict if the name is taken.
 [[nodiscard]] Result<NewAccount> add_account(
     store::UserRepository& users,
     const std::string& username,
@@ -30,7 +35,8 @@ struct NewAccount {
     store::UserRepository& users, const std::string& username
 );
 
-/// The account "admin", if there is no administrator yet: the first start of a laboratory.
+/// An administrator, if there is none yet: the first start of a laboratory. The account is "admin",
+/// or "admin-2" and so on where somebody else has that name.
 [[nodiscard]] std::optional<NewAccount> add_first_admin(store::UserRepository& users, TimeNs now);
 
 }  // namespace kinectlab::auth

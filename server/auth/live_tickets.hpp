@@ -20,17 +20,23 @@ public:
         TimeNs expires = 0;
     };
 
-    [[nodiscard]] Ticket issue(lab::UserId user, const std::string& rig, TimeNs now);
+    /// Who opens a stream, and with which session: the stream ends with it.
+    struct Holder {
+        lab::UserId user = 0;
+        std::string session;  ///< the hash of its token
+    };
+
+    [[nodiscard]] Ticket issue(const Holder& holder, const std::string& rig, TimeNs now);
 
     /// Whose ticket it is; nothing if it is unknown, used, expired or for another rig. Uses it up
-    /// in any case.
-    [[nodiscard]] std::optional<lab::UserId> redeem(
+    /// in any case. Whether the session is still open is for the caller to ask.
+    [[nodiscard]] std::optional<Holder> redeem(
         const std::string& token, const std::string& rig, TimeNs now
     );
 
 private:
     struct Entry {
-        lab::UserId user = 0;
+        Holder holder;
         std::string rig;
         TimeNs expires = 0;
     };

@@ -82,6 +82,10 @@ std::optional<Identity> SignIn::identify(const std::string& token, TimeNs now) {
         std::move(*user), std::move(session->csrf_token), std::move(session->token_hash)};
 }
 
+bool SignIn::is_open(const std::string& token_hash, TimeNs now) {
+    return store_.sessions.find(token_hash, now).has_value();
+}
+
 void SignIn::sign_out(const Identity& identity) {
     store_.sessions.remove(identity.token_hash);
 }

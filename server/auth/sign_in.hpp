@@ -48,6 +48,9 @@ public:
     /// Whose cookie it is; using a session moves its end.
     [[nodiscard]] std::optional<Identity> identify(const std::string& token, TimeNs now);
 
+    /// Whether this session is there and not over; asking does not move its end.
+    [[nodiscard]] bool is_open(const std::string& token_hash, TimeNs now);
+
     void sign_out(const Identity& identity);
 
     /// Ends all sessions of this person and opens a new one. Errors name `current` or `new`; wrong

@@ -48,6 +48,11 @@ std::optional<int> parse(int argc, char** argv, Arguments& arguments) {
     return parse_arguments(app, argc, argv);
 }
 
+bool on_earth(const Values& truth) {
+    const auto gravity = truth.find("gravity");
+    return gravity == truth.end() || is_earthly(gravity->second);
+}
+
 PendulumSettings pendulum_settings(const Values& values, const RgbdCamera& camera) {
     PendulumSettings settings;
     settings.length_m = values.at("length_m");
@@ -120,9 +125,9 @@ int analyse(int argc, char** argv) {
         track_recording(arguments.recording, experiments::plan_for(*definition, *values));
     if (!recording) return report(recording.error());
     const auto trajectories = trajectories_of(*recording);
-    const auto measured = analyse_pendulum(
-        trajectories.front(), pendulum_settings(*values, recording->source.camera)
-    );
+    PendulumSettings settings = pendulum_settings(*values, recording->source.camera);
+    settings.on_earth = on_earth(experiments::recorded_truth(*definition, arguments.recording));
+    const auto measured = analyse_pendulum(trajectories.front(), settings);
     if (!measured) {
         static_cast<void>(report(measured.error()));
         return kFailed;

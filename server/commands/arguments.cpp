@@ -4,6 +4,7 @@
 #include <cstdio>
 
 #include <CLI/CLI.hpp>
+#include <fmt/format.h>
 
 #include "server/commands/commands.hpp"
 
@@ -24,13 +25,25 @@ std::optional<int> parse_arguments(CLI::App& app, int argc, char** argv) {
     }
 }
 
+std::function<std::string(const std::string&)> check_number(double low, double high) {
+    return [low, high](const std::string& word) -> std::string {
+        double value = 0.0;
+        const char* end = word.data() + word.size();
+        const auto read = std::from_chars(word.data(), end, value);
+        const bool whole = read.ec == std::errc() && read.ptr == end;
+        if (whole && value >= low && value <= high) return {};  // false for NaN
+        return fmt::format("is {}; give a number from {} to {}", word.substr(0, 40), low, high);
+    };
+}
+
 Result<experiments::Values> parse_settings(const std::vector<std::string>& words) {
     experiments::Values values;
     for (const auto& word : words) {
         const std::size_t sign = word.find('=');
         const std::string name = word.substr(0, sign);
+        const bool named = sign != std::string::npos && !name.empty();
         double value = 0.0;
-        bool fine = sign != std::string::npos && !name.empty();
+        bool fine = named;
         if (fine) {
             const char* end = word.data() + word.size();
             const auto read = std::from_chars(word.data() + sign + 1, end, value);
@@ -41,7 +54,8 @@ Result<experiments::Values> parse_settings(const std::vector<std::string>& words
                 ErrorCode::invalid_argument,
                 name.empty() ? "--set" : name,
                 "\"" + word.substr(0, 80) + "\" is no NAME=NUMBER",
-                "give e.g. --set length_m=0.8"
+                named ? "give a number, e.g. --set " + name.substr(0, 40) + "=0.8"
+                      : "give e.g. --set length_m=0.8"
             );
         if (!values.emplace(name, value).second)
             return fail(ErrorCode::invalid_argument, name, "is set twice", "set it once");

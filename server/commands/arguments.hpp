@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -16,6 +17,9 @@ namespace kinectlab::commands {
 /// Parses and, if that ends the command already (--help, a wrong argument), says its exit status.
 /// Help goes to stdout, errors to stderr.
 [[nodiscard]] std::optional<int> parse_arguments(CLI::App& app, int argc, char** argv);
+
+/// For CLI11's check(): a number from `low` to `high`. CLI11's own range lets NaN through.
+[[nodiscard]] std::function<std::string(const std::string&)> check_number(double low, double high);
 
 /// NAME=VALUE for each --set. Errors name what was given.
 [[nodiscard]] Result<experiments::Values> parse_settings(const std::vector<std::string>& words);

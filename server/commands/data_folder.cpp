@@ -13,6 +13,8 @@
 namespace kinectlab::commands {
 namespace {
 
+constexpr const char* kDatabase = "kinectlab.sqlite";
+
 Error cannot_use(const std::filesystem::path& folder, const std::string& why) {
     return {
         ErrorCode::unavailable,
@@ -35,10 +37,19 @@ Result<void> need_data_folder(const std::filesystem::path& folder) {
     return {};
 }
 
-std::unique_ptr<store::Store> open_store(const std::filesystem::path& folder) {
-    return std::make_unique<store::Store>(
-        folder / "kinectlab.sqlite", config::share_dir() / "migrations"
+Result<void> need_database(const std::filesystem::path& folder) {
+    std::error_code error;
+    if (std::filesystem::is_regular_file(folder / kDatabase, error)) return {};
+    return fail(
+        ErrorCode::not_found,
+        "data_dir",
+        "there is no database in " + folder.string(),
+        "give the folder that `serve` uses with --data"
     );
+}
+
+std::unique_ptr<store::Store> open_store(const std::filesystem::path& folder) {
+    return std::make_unique<store::Store>(folder / kDatabase, config::share_dir() / "migrations");
 }
 
 Result<ServerLock> ServerLock::take(const std::filesystem::path& folder) {

@@ -11,6 +11,10 @@ namespace kinectlab::commands {
 /// Makes the folder, readable by its owner only, if it is not there.
 [[nodiscard]] Result<void> need_data_folder(const std::filesystem::path& folder);
 
+/// For what only looks: error `not_found` where no laboratory has put its database, so that a
+/// misspelt folder does not become one.
+[[nodiscard]] Result<void> need_database(const std::filesystem::path& folder);
+
 /// The laboratory's database in that folder. Throws store::StoreError.
 [[nodiscard]] std::unique_ptr<store::Store> open_store(const std::filesystem::path& folder);
 

@@ -34,7 +34,8 @@ void Progress::step() {
 
 void Progress::print() {
     printed_ = true;
-    const std::string text = what_ + ": " + std::to_string(done_) + " of " + std::to_string(total_);
+    std::string text = what_ + ": " + std::to_string(done_);
+    if (done_ <= total_) text += " of " + std::to_string(total_);
     std::fprintf(stderr, terminal_ ? "\r\033[K%s" : "%s\n", text.c_str());
 }
 

@@ -10,6 +10,7 @@ namespace kinectlab::commands {
 /// in a line every five seconds.
 class Progress {
 public:
+    /// `total` may be an estimate: beyond it no end is told any more.
     Progress(std::string what, std::size_t total);
     Progress(const Progress&) = delete;
     Progress& operator=(const Progress&) = delete;

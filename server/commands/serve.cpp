@@ -127,6 +127,9 @@ Result<void> run_server(const config::Config& config, const StopSignals& signals
     );
     auth::SignIn sign_in(*store);
     auth::LiveTickets tickets;
+    auth::LiveSessions live_sessions([&sign_in](const std::string& session) {
+        return sign_in.is_open(session, now_ns());
+    });
     const api::Context context{
         *store,
         rigs,
@@ -134,6 +137,7 @@ Result<void> run_server(const config::Config& config, const StopSignals& signals
         jpegs,
         sign_in,
         tickets,
+        live_sessions,
         std::move(*definitions),
         config::share_dir() / "api" / "openapi.json",
         now_ns};

@@ -1,3 +1,4 @@
+#include <charconv>
 #include <cmath>
 #include <numbers>
 
@@ -21,6 +22,7 @@ using experiments::Values;
 
 // Simulated recordings all begin on 2026-01-01 00:00 UTC: the same seed gives the same files.
 constexpr TimeNs kStart = 1'767'225'600 * kNsPerSecond;
+constexpr double kAboutToDisplace = 2.0;  // s
 
 struct Arguments {
     std::string experiment;
@@ -30,6 +32,15 @@ struct Arguments {
     std::optional<double> seconds;
     std::vector<std::string> settings;
 };
+
+// CLI11 lets a minus through to unsigned numbers and takes the largest for one that is too large.
+std::string check_seed(const std::string& word) {
+    std::uint64_t seed = 0;
+    const char* end = word.data() + word.size();
+    const auto read = std::from_chars(word.data(), end, seed);
+    if (read.ec == std::errc() && read.ptr == end) return {};
+    return "is " + word.substr(0, 40) + "; give a whole number from 0 to 18446744073709551615";
+}
 
 std::optional<int> parse(int argc, char** argv, Arguments& arguments) {
     CLI::App app(
@@ -41,8 +52,9 @@ std::optional<int> parse(int argc, char** argv, Arguments& arguments) {
         ->required();
     app.add_option("--out", arguments.out, "new folder for the recording")->required();
     app.add_option("--seconds", arguments.seconds, "of free motion (default: duration_s)")
-        ->check(CLI::Range(0.1, 3600.0));
+        ->check(check_number(0.1, 3600.0));
     app.add_option("--seed", arguments.seed, "of the noise; the same seed gives the same files")
+        ->check(check_seed)
         ->capture_default_str();
     app.add_option("--noise", arguments.noise, "none, khoshelham or kinect")->capture_default_str();
     app.add_option("--set", arguments.settings, "a parameter, NAME=VALUE; may be repeated")
@@ -84,7 +96,7 @@ Result<SourceInfo> describe(const simulate::RunSettings& run, const std::string&
 Result<simulate::RunSummary> record(
     const simulate::RunSettings& run, SequenceWriter& writer, const Values& values
 ) {
-    const double about = run.rest_s + run.held_s + run.seconds + 1.0;
+    const double about = run.rest_s + run.held_s + run.seconds + kAboutToDisplace;
     Progress progress("frames", static_cast<std::size_t>(about * simulate::kFrameRateHz));
     auto summary =
         simulate::simulate_run(run, [&](const RgbdFrame& frame, const simulate::Truth& truth) {

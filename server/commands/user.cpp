@@ -30,19 +30,26 @@ int print(const Result<auth::NewAccount>& account) {
     return kOk;
 }
 
-int add(store::Store& store, const Arguments& arguments) {
+/// Checked before the database is opened, which may make it: a refusal leaves nothing behind.
+Result<lab::Role> check(const Arguments& arguments) {
     const auto role = lab::role_from_text(arguments.role);
     if (!role) {
-        return report_usage(
-            {ErrorCode::invalid_argument,
-             "--role",
-             "is '" + arguments.role + "'",
-             "give student, assistant, instructor, staff or admin"}
+        return fail(
+            ErrorCode::invalid_argument,
+            "--role",
+            "is '" + arguments.role + "'",
+            "give student, assistant, instructor, staff or admin"
         );
     }
-    const std::string& name =
-        arguments.display_name.empty() ? arguments.username : arguments.display_name;
-    return print(auth::add_account(store.users, arguments.username, name, *role, now_ns()));
+    if (auto ok = auth::check_names(arguments.username, arguments.display_name); !ok)
+        return tl::unexpected(ok.error());
+    return *role;
+}
+
+int add(store::Store& store, const Arguments& arguments, lab::Role role) {
+    return print(
+        auth::add_account(store.users, arguments.username, arguments.display_name, role, now_ns())
+    );
 }
 
 int list(store::Store& store) {
@@ -77,10 +84,16 @@ int user(int argc, char** argv) {
     if (!config) return report_usage(config.error());
     const std::filesystem::path folder =
         arguments.data.empty() ? config->data_dir : std::filesystem::path(arguments.data);
-    if (auto ok = need_data_folder(folder); !ok) return report(ok.error());
+    if (to_add->parsed()) {
+        if (arguments.display_name.empty()) arguments.display_name = arguments.username;
+        const auto role = check(arguments);
+        if (!role) return report_usage(role.error());
+        if (auto ok = need_data_folder(folder); !ok) return report(ok.error());
+        return add(*open_store(folder), arguments, *role);
+    }
+    if (auto ok = need_database(folder); !ok) return report(ok.error());
     const auto store = open_store(folder);
     if (to_list->parsed()) return list(*store);
-    if (to_add->parsed()) return add(*store, arguments);
     return print(auth::reset_password(store->users, arguments.username));
 }
 

@@ -99,7 +99,8 @@ Result<TrackingPlan> load_tracking_plan(const std::filesystem::path& file) {
         .map(beside)
         .and_then(read_tracking_plan)
         .map_error([&](Error error) {
-            if (error.field != file.string()) error.field = file.string() + ": " + error.field;
+            if (error.field == file.string()) return error;
+            error.field = file.string() + (error.field.empty() ? "" : ": " + error.field);
             return error;
         });
 }

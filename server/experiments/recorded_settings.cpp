@@ -5,13 +5,13 @@
 namespace kinectlab::experiments {
 namespace {
 
-Result<Values> read_values(
-    const Definition& definition, const nlohmann::json& document, const std::string& file
-) {
+Result<Values> read_values(const Definition& definition, const nlohmann::json& document) {
     ObjectReader reader(document, "", {"experiment", "parameters"});
     const std::string id = reader.text("experiment");
     if (reader.ok() && id != definition.id)
-        reader.refuse("experiment", "is \"" + id + "\"", "analyse it as " + id);
+        reader.refuse(
+            "experiment", "is \"" + id + "\"", "give a recording of the experiment " + definition.id
+        );
     if (!reader.ok()) return reader.error();
 
     std::vector<std::string> names;
@@ -28,10 +28,7 @@ Result<Values> read_values(
         values[parameter.name] = parameters.number(parameter.name);
     }
     if (!parameters.ok()) return parameters.error();
-    return validate(definition, values, RigKind::real).map_error([&](Error error) {
-        error.field = file + ": " + error.field;
-        return error;
-    });
+    return validate(definition, values, RigKind::real);
 }
 
 }  // namespace
@@ -45,9 +42,10 @@ Result<Values> with_recorded_settings(
     if (std::filesystem::is_regular_file(file, code)) {
         const auto document = read_json_file(file);
         if (!document) return tl::unexpected(document.error());
-        auto recorded = read_values(definition, *document, file.string());
+        auto recorded = read_values(definition, *document);
         if (!recorded) {
             Error error = recorded.error();
+            error.field = file.string() + (error.field.empty() ? "" : ": ") + error.field;
             error.code = ErrorCode::bad_data;
             return tl::unexpected(error);
         }
@@ -56,6 +54,23 @@ Result<Values> with_recorded_settings(
     for (const auto& [name, value] : given)
         values[name] = value;
     return validate(definition, values, RigKind::real);
+}
+
+Values recorded_truth(const Definition& definition, const std::filesystem::path& recording) {
+    const auto file = recording / "experiment.json";
+    std::error_code code;
+    if (!std::filesystem::is_regular_file(file, code)) return {};
+    const auto document = read_json_file(file);
+    if (!document || !document->is_object() || !document->contains("parameters")) return {};
+    const auto& recorded = (*document)["parameters"];
+    Values values;
+    for (const auto& parameter : definition.parameters) {
+        const bool told = recorded.is_object() && recorded.contains(parameter.name) &&
+                          recorded[parameter.name].is_number();
+        if (parameter.simulation_only && told)
+            values[parameter.name] = recorded[parameter.name].get<double>();
+    }
+    return values;
 }
 
 }  // namespace kinectlab::experiments

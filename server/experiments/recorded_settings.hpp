@@ -14,4 +14,10 @@ namespace kinectlab::experiments {
     const Definition& definition, const Values& given, const std::filesystem::path& recording
 );
 
+/// What only a simulation can set, as the same file tells it: no part of an analysis, but a
+/// warning may want to know. Empty where there is no such file or it makes no sense.
+[[nodiscard]] Values recorded_truth(
+    const Definition& definition, const std::filesystem::path& recording
+);
+
 }  // namespace kinectlab::experiments

@@ -17,6 +17,11 @@ constexpr TimeNs round_up(TimeNs t, TimeNs step) {
     return round_down(t + step - 1, step);
 }
 
+/// To the minute, where a rounded span could read like the limit that it breaks.
+std::string minutes(TimeNs span) {
+    return std::to_string(span / (60 * kNsPerSecond));
+}
+
 struct Range {
     TimeNs from = 0;
     TimeNs to = 0;
@@ -64,8 +69,8 @@ Result<void> check_times(const Slot& slot, TimeNs now, const BookingRules& rules
         return fail(
             ErrorCode::invalid_argument,
             "end",
-            "makes the slot " + span_text(length) + " long",
-            "give a slot of " + span_text(rules.shortest) + " to " + span_text(rules.longest)
+            "makes the slot " + minutes(length) + " min long",
+            "give a slot of " + minutes(rules.shortest) + " to " + minutes(rules.longest) + " min"
         );
     }
     return {};

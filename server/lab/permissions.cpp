@@ -40,7 +40,7 @@ Result<void> may_start_run(
     if (now + kPreparation + from_seconds(duration_s) > slot.end) {
         return fail(
             ErrorCode::conflict,
-            "rig",
+            "duration_s",
             "the slot ends in " + span_text(slot.end - now) + ", too soon to prepare and measure " +
                 span_text(from_seconds(duration_s)),
             "choose a shorter duration or book another slot"

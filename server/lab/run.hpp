@@ -68,11 +68,12 @@ struct Run {
     std::string definition_json;  ///< the experiment as it was defined when the run began
     double duration_s = 0.0;      ///< how long it is to measure
     TimeNs created = 0;
-    std::optional<TimeNs> started;  ///< released: the first moment that counts
-    std::optional<TimeNs> ended;    ///< reached a final state
-    std::int64_t frames = 0;        ///< seen while measuring
-    std::int64_t frames_lost = 0;   ///< gaps in the device's frame counter while measuring
-    std::string result_json;        ///< the newest result object as JSON; empty if there is none
+    std::optional<TimeNs> release_until;  ///< a run that is ready is given up then
+    std::optional<TimeNs> started;        ///< released: the first moment that counts
+    std::optional<TimeNs> ended;          ///< reached a final state
+    std::int64_t frames = 0;              ///< seen while measuring
+    std::int64_t frames_lost = 0;         ///< gaps in the device's frame counter while measuring
+    std::string result_json;  ///< the newest result object as JSON; empty if there is none
     std::vector<std::string> warnings;  ///< of that result, for a student
 };
 

@@ -109,6 +109,7 @@ std::optional<Request> HttpConnection::to_request(Parser::value_type& message) c
     request.path = std::move(target->path);
     request.segments = std::move(target->segments);
     request.query = std::move(target->query);
+    request.repeated = std::move(target->repeated);
     for (const auto& field : message) {
         request.headers.push_back({std::string(field.name_string()), std::string(field.value())});
     }

@@ -156,7 +156,7 @@ std::optional<Target> parse_target(std::string_view target) {
             equals == std::string_view::npos ? std::string_view() : part.substr(equals + 1), true
         );
         if (!name || !value) return false;
-        parsed.query[std::move(*name)] = std::move(*value);
+        if (!parsed.query.try_emplace(*name, std::move(*value)).second) parsed.repeated = *name;
         return true;
     });
     if (!query_ok) return std::nullopt;

@@ -24,7 +24,8 @@ struct Request {
     Method method = Method::get;
     std::string path;                               ///< as sent, without the query
     std::vector<std::string> segments;              ///< of the path, percent-decoded
-    std::map<std::string, std::string> query;       ///< decoded; of a repeated name the last
+    std::map<std::string, std::string> query;       ///< decoded; of a repeated name the first
+    std::string repeated;                           ///< a name that stands in the query twice
     std::map<std::string, std::string> parameters;  ///< what the route's {names} matched
     std::vector<Header> headers;
     std::string body;
@@ -47,6 +48,7 @@ struct Target {
     std::string path;
     std::vector<std::string> segments;
     std::map<std::string, std::string> query;
+    std::string repeated;
 };
 [[nodiscard]] std::optional<Target> parse_target(std::string_view target);
 

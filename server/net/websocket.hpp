@@ -31,6 +31,9 @@ public:
 
     [[nodiscard]] virtual std::optional<Message> next() = 0;
 
+    /// Asked before each message: whether the connection is to end here (close code 1008).
+    [[nodiscard]] virtual bool over() const = 0;
+
     /// A text message of the client; false if it makes no sense, which ends the connection.
     [[nodiscard]] virtual bool received(std::string_view text) = 0;
 };

@@ -86,6 +86,7 @@ asio::awaitable<void> WebSocketConnection::close(websocket::close_code code) {
 asio::awaitable<void> WebSocketConnection::write_all() {
     error_code error;
     while (!over_ && !error) {
+        if (endpoint_->over()) co_return co_await close(websocket::close_code::policy_error);
         const auto message = endpoint_->next();
         if (!message && leaving_) co_return co_await close(websocket::close_code::going_away);
         if (!message) {

@@ -21,10 +21,12 @@ PoseWriter::~PoseWriter() {
     thread_.join();
 }
 
-void PoseWriter::append(lab::RunId run, store::StoredPose pose) {
+void PoseWriter::append(
+    lab::RunId run, store::StoredPose pose, std::optional<store::FrameCounts> so_far
+) {
     std::unique_lock lock(mutex_);
     changed_.wait(lock, [&] { return waiting_.size() < limit_; });
-    waiting_.push_back({run, std::move(pose)});
+    waiting_.push_back({run, std::move(pose), so_far});
     if (waiting_.size() == limit_) changed_.notify_all();
 }
 
@@ -72,7 +74,7 @@ void PoseWriter::store(const std::vector<Waiting>& batch) {
         const lab::RunId run = batch[begin].run;
         while (begin < batch.size() && batch[begin].run == run)
             poses.push_back(batch[begin++].pose);
-        poses_.append(run, poses);
+        poses_.append(run, poses, batch[begin - 1].so_far);
     }
 }
 

@@ -22,7 +22,10 @@ public:
     PoseWriter(const PoseWriter&) = delete;
     PoseWriter& operator=(const PoseWriter&) = delete;
 
-    void append(lab::RunId run, store::StoredPose pose);
+    /// `so_far`: the run's frames with this one, stored together with its poses.
+    void append(
+        lab::RunId run, store::StoredPose pose, std::optional<store::FrameCounts> so_far = {}
+    );
 
     /// Returns when everything appended so far is on the disk, or storing has failed.
     void flush();
@@ -34,6 +37,7 @@ private:
     struct Waiting {
         lab::RunId run = 0;
         store::StoredPose pose;
+        std::optional<store::FrameCounts> so_far;
     };
 
     void work();

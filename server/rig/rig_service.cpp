@@ -203,7 +203,8 @@ Result<lab::Run> RigService::start_run(
     const auto duration = values->find("duration_s");
     const double duration_s = duration == values->end() ? 30.0 : duration->second;
     if (auto allowed = lab::may_start_run(user, *booking, duration_s, now); !allowed) {
-        return tl::unexpected(allowed.error());
+        const bool too_long = allowed.error().field == "duration_s";
+        return tl::unexpected(too_long ? under_parameters(allowed.error()) : allowed.error());
     }
     return (*lane)->worker().start(
         {
@@ -215,9 +216,10 @@ Result<lab::Run> RigService::start_run(
             .definition_json = experiments::to_json(*definition).dump(),
             .duration_s = duration_s,
             .created = now,
+            .release_until =
+                std::min(now + kReadyAtMost, booking->slot.end - from_seconds(duration_s)),
         },
-        experiments::plan_for(*definition, *values),
-        std::min(now + kReadyAtMost, booking->slot.end - from_seconds(duration_s))
+        experiments::plan_for(*definition, *values)
     );
 }
 

@@ -124,9 +124,7 @@ void RigWorker::take_order(TimeNs now) {
     auto observer = Observer::create(device_->source->info(), order->plan);
     if (observer) {
         observer_ = std::move(*observer);
-        execution_ = std::make_unique<RunExecution>(
-            surroundings(), order->run, order->ready_until, now, parts_.limits
-        );
+        execution_ = std::make_unique<RunExecution>(surroundings(), order->run, now, parts_.limits);
     } else {
         (void)active_.advance({lab::RunEvent::fail, now, to_text(observer.error()), {}});
         active_.clear();
@@ -229,7 +227,7 @@ void RigWorker::close(lab::RunEvent event, const std::string& reason) {
     if (broken) std::rethrow_exception(broken);
 }
 
-Result<lab::Run> RigWorker::start(const lab::Run& run, TrackingPlan plan, TimeNs ready_until) {
+Result<lab::Run> RigWorker::start(const lab::Run& run, TrackingPlan plan) {
     const std::lock_guard lock(mutex_);
     if (status_.state == lab::RigState::offline) {
         return fail(ErrorCode::unavailable, "rig", status_.sentence, "choose another rig");
@@ -242,7 +240,7 @@ Result<lab::Run> RigWorker::start(const lab::Run& run, TrackingPlan plan, TimeNs
     auto stored = store_.runs.add(run);
     if (!stored) return stored;
     active_.begin(*stored);
-    order_ = RunOrder{*stored, std::move(plan), ready_until};
+    order_ = RunOrder{*stored, std::move(plan)};
     return stored;
 }
 

@@ -47,11 +47,9 @@ public:
     /// Ends a run that is under way, stops the bob and lets the device go.
     void close(lab::RunEvent event, const std::string& reason);
 
-    /// Stores the run and carries it out. `ready_until`: when it is given up if nobody released it.
-    /// Errors: unavailable while offline, conflict while busy.
-    [[nodiscard]] Result<lab::Run> start(
-        const lab::Run& run, TrackingPlan plan, TimeNs ready_until
-    );
+    /// Stores the run and carries it out; with release_until it is given up then if nobody released
+    /// it. Errors: unavailable while offline, conflict while busy.
+    [[nodiscard]] Result<lab::Run> start(const lab::Run& run, TrackingPlan plan);
     [[nodiscard]] Result<lab::Run> advance(lab::RunId run, const store::RunStep& step);
     [[nodiscard]] lab::RigStatus status() const;
     [[nodiscard]] std::optional<bus::PictureTaken> picture() const;
@@ -61,7 +59,6 @@ private:
     struct RunOrder {
         lab::Run run;
         TrackingPlan plan;
-        TimeNs ready_until = 0;
     };
 
     void open(TimeNs now);

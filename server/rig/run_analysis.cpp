@@ -130,6 +130,8 @@ Result<RunAnalysis> analyse_run(
             .latitude_deg = parameter(run, "latitude_deg", defaults.latitude_deg),
             .depth_scale_u = camera.depth_scale_u,
             .clock_u = camera.clock_u,
+            // Only a simulated rig has it as a parameter.
+            .on_earth = is_earthly(parameter(run, "gravity", kLeastOnEarth)),
         }
     );
     if (!result) return tl::unexpected(result.error());

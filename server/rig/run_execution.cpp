@@ -34,13 +34,9 @@ bool needs_frames(RunState state) {
 }  // namespace
 
 RunExecution::RunExecution(
-    RunSurroundings rig,
-    const lab::Run& run,
-    TimeNs ready_until,
-    TimeNs now,
-    const RunLimits& limits
+    RunSurroundings rig, const lab::Run& run, TimeNs now, const RunLimits& limits
 )
-    : rig_(rig), run_(run), ready_until_(ready_until), limits_(limits), last_frame_at_(now) {}
+    : rig_(rig), run_(run), limits_(limits), last_frame_at_(now) {}
 
 void RunExecution::step(TimeNs now, const RgbdFrame* frame, std::uint32_t missed) {
     if (frame != nullptr) last_frame_at_ = now;
@@ -133,6 +129,10 @@ void RunExecution::track(RunState state, TimeNs now, const RgbdFrame& frame, std
     // The camera may deliver a picture a little late: what it took before the release is no part
     // of the measurement.
     const bool counts = state == RunState::measuring && frame.t >= run_.started.value();
+    if (counts) {
+        if (frames_ > 0) frames_lost_ += missed;
+        ++frames_;
+    }
     for (const Observed& object : *observed) {
         rig_.bus.publish(bus::PoseMeasured{
             run_.rig,
@@ -142,11 +142,11 @@ void RunExecution::track(RunState state, TimeNs now, const RgbdFrame& frame, std
             missed});
         if (!counts) continue;
         samples_[object.object].push_back(object.track);
-        rig_.writer.append(run_.id, {object.object, object.motion});
+        rig_.writer.append(
+            run_.id, {object.object, object.motion}, store::FrameCounts{frames_, frames_lost_}
+        );
     }
     if (!counts) return;
-    if (frames_ > 0) frames_lost_ += missed;
-    ++frames_;
     if (frame.t - run_.started.value() >= from_seconds(run_.duration_s)) {
         advance(RunEvent::measured, now, "The duration is over");
     }
@@ -164,7 +164,7 @@ void RunExecution::watch(RunState state, TimeNs now) {
     if (auto error = rig_.writer.take_error()) {
         return fail_run(now, {ErrorCode::unavailable, "", "poses could not be stored: " + *error});
     }
-    if (state == RunState::ready && now >= ready_until_) {
+    if (state == RunState::ready && run_.release_until && now >= *run_.release_until) {
         advance(RunEvent::abort, now, "Nobody released the bob in time");
     } else if (state == RunState::releasing) {
         await_release(now);

@@ -39,13 +39,8 @@ struct RunSurroundings {
 /// it and calls step() with every frame, and without one while none comes.
 class RunExecution {
 public:
-    /// `ready_until`: when a run that nobody released is given up.
     RunExecution(
-        RunSurroundings rig,
-        const lab::Run& run,
-        TimeNs ready_until,
-        TimeNs now,
-        const RunLimits& limits = {}
+        RunSurroundings rig, const lab::Run& run, TimeNs now, const RunLimits& limits = {}
     );
 
     /// `missed`: frames that the device lost just before this one.
@@ -77,7 +72,6 @@ private:
 
     RunSurroundings rig_;
     lab::Run run_;
-    TimeNs ready_until_;
     RunLimits limits_;
     std::optional<lab::RunState> entered_;
     TimeNs entered_at_ = 0;

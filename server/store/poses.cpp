@@ -101,11 +101,22 @@ MotionSample read_sample(SQLite::Statement& row) {
 
 }  // namespace
 
-void PoseRepository::append(lab::RunId run, std::span<const StoredPose> poses) {
+void PoseRepository::append(
+    lab::RunId run, std::span<const StoredPose> poses, const std::optional<FrameCounts>& so_far
+) {
     Database::Transaction transaction(database_);
     SQLite::Statement insert(transaction.connection(), kInsert);
     for (const auto& pose : poses)
         insert_pose(insert, run, pose.object, pose.sample);
+    if (so_far) {
+        SQLite::Statement count(
+            transaction.connection(),
+            "UPDATE runs SET frames = max(frames, ?), frames_lost = max(frames_lost, ?) "
+            "WHERE id = ?"
+        );
+        SQLite::bind(count, so_far->frames, so_far->lost, run);
+        count.exec();
+    }
     transaction.commit();
 }
 

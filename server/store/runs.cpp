@@ -12,8 +12,8 @@ namespace {
 constexpr const char* kColumns =
     "SELECT r.id, r.rig, r.experiment, r.user_id, u.display_name, r.booking_id, r.state, r.reason, "
     "r.parameters, r.definition, r.duration_s, r.created_ns, r.started_ns, r.ended_ns, r.frames, "
-    "r.frames_lost, s.result, s.warnings FROM runs r JOIN users u ON u.id = r.user_id "
-    "LEFT JOIN results s ON s.run_id = r.id AND s.version = "
+    "r.frames_lost, s.result, s.warnings, r.release_until_ns FROM runs r "
+    "JOIN users u ON u.id = r.user_id LEFT JOIN results s ON s.run_id = r.id AND s.version = "
     "(SELECT max(version) FROM results WHERE run_id = r.id) WHERE ";
 
 std::optional<TimeNs> optional_time(const SQLite::Column& column) {
@@ -35,6 +35,7 @@ lab::Run read_run(SQLite::Statement& row) {
         .definition_json = row.getColumn(9).getString(),
         .duration_s = row.getColumn(10).getDouble(),
         .created = row.getColumn(11).getInt64(),
+        .release_until = optional_time(row.getColumn(18)),
         .started = optional_time(row.getColumn(12)),
         .ended = optional_time(row.getColumn(13)),
         .frames = row.getColumn(14).getInt64(),
@@ -90,7 +91,8 @@ Result<lab::Run> RunRepository::add(const lab::Run& run) {
     SQLite::Statement insert(
         connection,
         "INSERT INTO runs (rig, experiment, user_id, booking_id, state, parameters, definition, "
-        "duration_s, created_ns) VALUES (?, ?, ?, ?, 'preparing', ?, ?, ?, ?)"
+        "duration_s, created_ns, release_until_ns) "
+        "VALUES (?, ?, ?, ?, 'preparing', ?, ?, ?, ?, ?)"
     );
     SQLite::bind(
         insert,
@@ -103,6 +105,7 @@ Result<lab::Run> RunRepository::add(const lab::Run& run) {
         run.duration_s,
         run.created
     );
+    bind_optional(insert, 9, run.release_until);
     insert.exec();
     const lab::RunId id = connection.getLastInsertRowid();
     add_change(connection, {id, run.created, lab::RunState::preparing, "Started", run.user});

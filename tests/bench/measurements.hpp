@@ -22,6 +22,7 @@ Figures measure_gravity_kinect();
 Figures measure_live_latency();
 Figures measure_texture_pose();
 Figures measure_sift3d_keypoints();
+Figures measure_rendering();
 
 /// Everything that can be measured. To add something: declare it above and name it here with the
 /// figures it yields, so that --filter can pass over what is not wanted.
@@ -47,6 +48,7 @@ inline constexpr std::array kMeasurements{
     Measurement{"live: capture to pose at a WebSocket client, frames lost", measure_live_latency},
     Measurement{"2-D texture pose, SIFT", measure_texture_pose},
     Measurement{"3-D SIFT keypoints", measure_sift3d_keypoints},
+    Measurement{"rendering a rig", measure_rendering},
 };
 
 }  // namespace kinectlab::bench

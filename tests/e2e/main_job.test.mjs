@@ -132,7 +132,7 @@ test('the list of runs opens it again', async () => {
   await page.getByRole('link', { name: 'Runs' }).first().click();
   await page.getByRole('row').nth(1).waitFor();
   findings.push(...(await inspect(page, '12-runs')));
-  await page.getByRole('link', { name: /^Open run/ }).first().click();
+  await page.getByRole('link', { name: /^Open run/i }).first().click();
   await page.getByTestId('g').waitFor();
   assert.equal(await page.getByTestId('g').innerText(), shownG);
   await page.goBack();

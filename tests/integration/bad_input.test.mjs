@@ -26,8 +26,8 @@ test('whatever is wrong with a booking is named, and nothing is stored', async (
     [{ ...good, experiment: 'volcano' }, 'experiment'],
     [{ ...good, colour: 'red' }, 'colour'],
     [{ rig: 'rig-1', experiment: 'pendulum', start: good.start }, 'end'],
-    [[good], undefined],
-    [null, undefined],
+    [[good], 'body'],
+    [null, 'body'],
   ];
   for (const [body, field] of wrong) assertProblem(await student.post('/bookings', body === null ? 'null' : body), 422, field);
   assert.deepEqual((await student.get('/bookings')).body.bookings, []);
@@ -108,6 +108,8 @@ test('addresses and queries that make no sense', async (t) => {
   }
   assertProblem(await admin.get('/runs?limit=0'), 422, 'limit');
   assertProblem(await admin.get('/runs?limit=ten'), 422, 'limit');
+  assertProblem(await admin.get('/runs?limit=1&limit=2'), 422, 'limit');
+  assertProblem(await admin.get('/runs?rig=nope'), 422, 'rig');
   assertProblem(await admin.get('/runs?before=-3'), 422, 'before');
   assertProblem(await admin.get('/runs?mine=perhaps'), 422, 'mine');
   assertProblem(await admin.get('/runs?user=3'), 422, 'user');

@@ -46,7 +46,15 @@ describe('wrong arguments end with status 2 and name what was wrong', () => {
     [['simulate', 'pendulm', '--out', out], /pendulm/, /did you mean pendulum/],
     [['simulate', 'pendulum', '--out', out, '--seconds', '-3'], /--seconds/],
     [['simulate', 'pendulum', '--out', out, '--seconds', 'ten'], /--seconds/],
-    [['simulate', 'pendulum', '--out', out, '--seed', 'x'], /--seed/],
+    [['simulate', 'pendulum', '--out', out, '--seconds', 'nan'], /--seconds/, /from 0.1 to 3600/],
+    [['simulate', 'pendulum', '--out', out, '--seconds', '0'], /--seconds/, /from 0.1 to 3600/],
+    [['simulate', 'pendulum', '--out', out, '--seed', 'x'], /--seed/, /whole number/],
+    [['simulate', 'pendulum', '--out', out, '--seed=-1'], /--seed/, /from 0 to/],
+    [['simulate', 'pendulum', '--out', out, '--seed', '1.5'], /--seed/, /whole number/],
+    [['simulate', 'pendulum', '--out', out, '--seed', '18446744073709551616'], /--seed/, /from 0 to/],
+    [['simulate', 'pendulum', '--out', out, '--set', 'amplitude_deg=abc'], /--set amplitude_deg=/],
+    [['user', 'add', 'A B', '--data', out], /username/],
+    [['user', 'add', 'ada', '--role', 'king', '--data', out], /--role/],
     [['simulate', 'pendulum', '--out', out, '--noise', 'loud'], /noise/, /kinect/],
     [['simulate', 'pendulum', '--out', out, '--set', 'lenght_m=1'], /lenght_m/, /did you mean length_m/],
     [['simulate', 'pendulum', '--out', out, '--set', 'length_m=9'], /length_m: is 9/, /from 0.3 to 1.5/],
@@ -65,6 +73,12 @@ describe('wrong arguments end with status 2 and name what was wrong', () => {
       assert.ok(!existsSync(out), 'nothing was stored');
     });
   }
+
+  test('only looking makes no laboratory', () => {
+    refused(kinectlab('user', 'list', '--data', out), 1, /no database/, /--data/);
+    refused(kinectlab('user', 'reset', 'ada', '--data', out), 1, /no database/);
+    assert.ok(!existsSync(out), 'nothing was stored');
+  });
 
   test('help and version', () => {
     assert.match(kinectlab('--help').stdout, /simulate[\s\S]*track[\s\S]*analyse/);
@@ -128,6 +142,7 @@ describe('a simulated pendulum', () => {
   test('is analysed with the length that its experiment.json tells', () => {
     const result = json(kinectlab('analyse', 'pendulum', recording));
     assert.equal(result.parameters.length_m, 0.9);
+    assert.ok(!result.warnings.some((text) => /Earth's ground/.test(text)), 'a set gravity is no surprise');
     assert.equal(result.parameters.gravity, undefined, 'the truth is no parameter of the analysis');
   });
 

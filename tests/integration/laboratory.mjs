@@ -42,9 +42,13 @@ export async function measuringRun(client, parameters = { duration_s: 10 }, rig 
   await bookNow(client, rig);
   const made = await client.post('/runs', { rig, experiment: 'pendulum', parameters });
   assert.equal(made.status, 201, JSON.stringify(made.body));
-  await runReaches(client, made.body.id, ['ready']);
+  assert.equal(made.body.release_until, null);
+  const ready = await runReaches(client, made.body.id, ['ready']);
+  const left = Date.parse(ready.release_until) - Date.now();
+  assert.ok(left > 0 && left <= 300_000, `to be released until ${ready.release_until}`);
   const released = await client.post(`/runs/${made.body.id}/release`);
   assert.equal(released.status, 200, JSON.stringify(released.body));
+  assert.equal(released.body.release_until, null);
   await runReaches(client, made.body.id, ['measuring']);
   return made.body.id;
 }

@@ -1,8 +1,8 @@
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
-import { assertProblem, firstAdmin, WebSocket } from './client.mjs';
+import { assertProblem, Client, firstAdmin, newPassword, WebSocket } from './client.mjs';
 import { eventually, rigIdle, sleep, watch } from './laboratory.mjs';
-import { startServer } from './server.mjs';
+import { runProgram, startServer } from './server.mjs';
 
 const ticketOf = async (client, rig = 'rig-1') => (await client.post(`/rigs/${rig}/live-ticket`)).body.ticket;
 const address = (server, query, rig = 'rig-1') => `ws://127.0.0.1:${server.port}/api/v1/rigs/${rig}/live${query}`;
@@ -34,6 +34,25 @@ test('a ticket opens the stream once, for its rig, from our own pages', async (t
   assertProblem(await admin.get('/rigs/rig-1/live?ticket=x'), 426);
   assertProblem(await admin.post('/rigs/rig-9/live-ticket'), 404);
   assert.ok(!server.log.includes(ticket), 'a ticket is in the log');
+});
+
+test('signing out ends the streams and tickets of that session, and no other', async (t) => {
+  const server = await startServer(t);
+  const admin = await firstAdmin(server);
+  const elsewhere = new Client(server);
+  await elsewhere.signIn('admin', newPassword);
+  await rigIdle(admin);
+  const over = await watch(admin);
+  const kept = await watch(elsewhere);
+  const ticket = await ticketOf(admin);
+  assert.equal((await admin.delete('/session')).status, 204);
+  assert.equal(await upgrade(address(server, `?ticket=${ticket}`)), 401);
+  assert.equal(await eventually(() => over.closed, (code) => code !== undefined, { seconds: 3 }), 1008);
+  assert.equal(kept.closed, undefined);
+
+  const reset = await runProgram(['user', 'reset', 'admin', '--data', server.data]);
+  assert.equal(reset.code, 0, reset.stderr);
+  assert.equal(await eventually(() => kept.closed, (code) => code !== undefined, { seconds: 5 }), 1008);
 });
 
 test('what a client may not say ends its connection, and nobody else notices', async (t) => {

@@ -24,6 +24,10 @@ test('killed in the middle of a run, the server keeps every pose and says what h
   assert.ok(run.reason.length > 0 && run.ended_at);
   const poses = (await after.get(`/runs/${id}/poses`)).body;
   assert.ok(poses.t_s.length >= 60, `${poses.t_s.length} poses kept of about 120`);
+  assert.equal(run.frames, poses.t_s.length, 'the run knows the frames that were kept');
+  const fit = await after.get(`/runs/${id}/fit`);
+  assert.equal(fit.status, 404);
+  assert.match(fit.body.detail, /interrupted/);
   await rigIdle(after);
 });
 

@@ -1,7 +1,7 @@
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 import { assertProblem, firstAdmin, person } from './client.mjs';
-import { measuringRun, rigIdle, runReaches, watch } from './laboratory.mjs';
+import { eventually, measuringRun, rigIdle, runReaches, watch } from './laboratory.mjs';
 import { startServer } from './server.mjs';
 
 const columns = 't_ns,object,status,x,y,z,qx,qy,qz,qw,sx,sy,sz,vx,vy,vz,wx,wy,wz';
@@ -82,7 +82,9 @@ test('abort ends a run without a result, stop ends it with one', { timeout: 180_
   const server = await startServer(t);
   const admin = await firstAdmin(server);
   const first = await measuringRun(admin, { duration_s: 60 });
+  await eventually(async () => (await admin.get(`/runs/${first}`)).body, (run) => run.frames > 0, { seconds: 5 });
   const aborted = await admin.post(`/runs/${first}/abort`);
+  assert.ok(aborted.body.frames > 0, 'frames are known while it measures');
   assert.equal(aborted.body.state, 'aborted');
   assert.ok(aborted.body.reason.length > 0 && aborted.body.result === null);
   assertProblem(await admin.get(`/runs/${first}/fit`), 404);

@@ -1,7 +1,7 @@
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 import { assertProblem, Client, firstAdmin, newPassword, person } from './client.mjs';
-import { runProgram, startServer } from './server.mjs';
+import { runProgram, startServer, temporaryFolder } from './server.mjs';
 
 test('the first administrator replaces the one-time password', async (t) => {
   const server = await startServer(t);
@@ -29,6 +29,16 @@ test('the first administrator replaces the one-time password', async (t) => {
   assert.equal((await other.delete('/session')).status, 204);
   assertProblem(await other.get('/session'), 401);
   assert.ok(!server.log.includes(server.password) && !server.log.includes(newPassword), 'a password is in the log');
+});
+
+test('there is an administrator also where somebody else was added first', async (t) => {
+  const data = await temporaryFolder(t);
+  for (const name of ['alice', 'admin']) {
+    assert.equal((await runProgram(['user', 'add', name, '--role', 'student', '--data', data])).code, 0);
+  }
+  const server = await startServer(t, { data });
+  const session = await new Client(server).signIn('admin-2', server.password);
+  assert.equal(session.body.user?.role, 'admin', JSON.stringify(session.body));
 });
 
 test('a new password ends the other sessions', async (t) => {

@@ -73,6 +73,7 @@ public:
             .definition_json = R"({"id": "pendulum"})",
             .duration_s = 10.0,
             .created = now,
+            .release_until = now + 5 * kMinute,
         };
     }
 

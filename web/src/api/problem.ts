@@ -1,4 +1,4 @@
-import { clockTime, dayName } from '../models/time';
+import { localTimes } from '../models/time';
 import { parameterLabel } from '../models/words';
 import type { FieldError, Problem, Slot } from './types';
 
@@ -36,11 +36,11 @@ export function offlineError(): ApiError {
 /** Reads a problem document; anything else (a proxy's HTML page, an empty body) still gives a sentence. */
 export function problemToError(status: number, body: unknown): ApiError {
   const problem: Problem = typeof body === 'object' && body !== null ? (body as Problem) : {};
-  const errors = Array.isArray(problem.errors) ? problem.errors.filter(isFieldError) : [];
+  const errors = Array.isArray(problem.errors) ? problem.errors.filter(isFieldError).map(withoutCalls) : [];
   const alternatives = Array.isArray(problem.alternatives) ? problem.alternatives.filter(isSlot) : [];
   // The detail is written for a terminal, `field: message; cure`; the parts read better.
   const spoken = errors.map(withSubject).join(' ');
-  const message = spoken || problem.detail || fallback[status] || problem.title || `The laboratory answered with error ${status}. Try again.`;
+  const message = spoken || (problem.detail && withoutCall(problem.detail)) || fallback[status] || problem.title || `The laboratory answered with error ${status}. Try again.`;
   return new ApiError(status, asSentence(message), errors, alternatives);
 }
 
@@ -71,18 +71,21 @@ function withSubject(error: FieldError): string {
   return asSentence(error.cure ? `${text}; ${error.cure}` : text);
 }
 
+/** `there is no rig 'nope'; GET /api/v1/rigs lists them`: that call helps who writes programs, not who reads pages. */
+function withoutCall(text: string): string {
+  return text.replace(/;?[^;]*\b(GET|POST|PUT|PATCH|DELETE) \/[^;]*/g, '').trim();
+}
+
+function withoutCalls(error: FieldError): FieldError {
+  const { cure, ...rest } = error;
+  const kept = cure ? withoutCall(cure) : '';
+  return kept ? { ...rest, cure: kept } : rest;
+}
+
 function asSentence(text: string): string {
   const trimmed = localTimes(text.trim());
   const start = trimmed.charAt(0).toUpperCase() + trimmed.slice(1);
   return /[.!?]$/.test(start) ? start : `${start}.`;
-}
-
-/** The server speaks UTC; people read their own clock. */
-function localTimes(text: string): string {
-  return text.replace(/\d{4}-\d\d-\d\dT\d\d:\d\d(:\d\d(\.\d+)?)?Z/g, (stamp) => {
-    const at = Date.parse(stamp);
-    return `${clockTime(at)} ${dayName(at)}`;
-  });
 }
 
 function isFieldError(value: unknown): value is FieldError {

@@ -99,6 +99,8 @@ export interface Run {
   started_at: string | null;
   ended_at: string | null;
   duration_s: number | null;
+  /** When a run that waits in state ready is ended if nobody releases it. */
+  release_until?: string | null;
   frames: number;
   frames_lost: number;
   result: Result | null;

@@ -4,6 +4,7 @@ import * as lab from '../api/lab';
 import { ApiError } from '../api/problem';
 import type { Rig, Run } from '../api/types';
 import { SlidingColumns } from '../models/ring';
+import { isOlder } from '../models/run_phase';
 import { LiveConnection, type ConnectionState } from './connection';
 import type { LiveMessage, PoseMessage } from './messages';
 import type { Picture } from './picture';
@@ -86,9 +87,9 @@ export class RigFeed {
     return Date.now() + this.clockOffset - this.newest;
   }
 
-  /** What an answer to a command said; the stream says it too, a little later. */
+  /** What an answer to a command said; the stream says it too, a little later or a little earlier. */
   adopt(run: Run): void {
-    if (!this.run || run.id >= this.run.id) this.setRun(run);
+    if (!this.run || !isOlder(run, this.run)) this.setRun(run);
   }
 
   private receive(message: LiveMessage): void {

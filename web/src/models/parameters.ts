@@ -19,6 +19,14 @@ export function groupParameters(parameters: Parameter[], simulated: boolean): Pa
   return first.length > 0 ? { first, more } : { first: more, more: [] };
 }
 
+/** What the rig has in its stand: as the run under way, or else the last one, set it; what is typed for the next run is not
+ * there before Prepare. Without any run it stands as the definition says. */
+export function standing(run: { parameters: Record<string, number> } | null, definition: Parameter[]): { length: number; bobRadius: number } {
+  const of = (name: string, otherwise: number) =>
+    run?.parameters[name] || definition.find((p) => p.name === name)?.default || otherwise;
+  return { length: of('length_m', 1), bobRadius: of('bob_radius_m', 0.05) };
+}
+
 export function rangeText(p: Parameter): string {
   const low = Number.isFinite(p.min) ? formatQuantity(p.min, '1') : '';
   const high = Number.isFinite(p.max) ? formatQuantity(p.max, '1') : '';

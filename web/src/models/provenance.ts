@@ -1,3 +1,4 @@
+import { dateTime, viewerZone, zoneName } from './time';
 import { humanise } from './words';
 
 export interface Fact {
@@ -21,5 +22,12 @@ export function facts(provenance: Record<string, unknown>, prefix = ''): Fact[] 
 }
 
 function plain(value: unknown): string {
+  if (typeof value === 'string' && /^\d{4}-\d\d-\d\dT\d\d:\d\d.*Z$/.test(value) && !Number.isNaN(Date.parse(value))) return localTime(Date.parse(value));
   return typeof value === 'object' ? JSON.stringify(value) : String(value);
+}
+
+/** On the viewer's clock as everywhere else on the page, with the zone, since this is what one copies into a report. */
+function localTime(at: number): string {
+  const zone = viewerZone();
+  return `${dateTime(at, zone)}, ${zoneName(zone, at)}`;
 }

@@ -1,6 +1,7 @@
 /** What a run is doing, said in a sentence, and the one thing to do about it. */
 import type { Booking, Rig, Run, RunState } from '../api/types';
-import { clockTime, duration, minute, slotText } from './time';
+import { clockTime, duration, localTimes, minute, second, slotText } from './time';
+import { inWords } from './words';
 import { bookingInterval } from './slots';
 
 export type Action = 'prepare' | 'release' | 'stop' | 'result' | 'book' | 'wait';
@@ -25,6 +26,8 @@ export interface Situation {
   /** Whether the viewer may command this run: it is theirs, or they assist. */
   mayCommand: boolean;
   now: number;
+  /** As `releaseLeft` tells it. */
+  releaseLeft?: number | null;
 }
 
 const underWay: RunState[] = ['preparing', 'ready', 'releasing', 'measuring', 'analysing'];
@@ -76,7 +79,7 @@ function underWayPhase(run: Run, s: Situation): Phase {
       return { ...wait('active', 'The rig is getting ready: it stops the bob, looks at the empty scene and lifts the bob to its angle.', 'Preparing …'), abortable: mine };
     case 'ready':
       return mine
-        ? { sentence: 'The bob is held at its angle. Release it when you are ready.', tone: 'ready', action: 'release', label: 'Release', abortable: true }
+        ? { sentence: `The bob is held at its angle. ${releaseCall(s.releaseLeft)}`, tone: 'ready', action: 'release', label: 'Release', abortable: true }
         : wait('ready', 'The bob is held at its angle and waits to be released.', 'Ready');
     case 'releasing':
       return { ...wait('active', 'The magnet lets go of the bob …', 'Releasing …'), abortable: mine };
@@ -87,6 +90,19 @@ function underWayPhase(run: Run, s: Situation): Phase {
     default:
       return { ...wait('active', 'The motion is measured. The fit of the pendulum is being made …', 'Analysing …'), abortable: mine };
   }
+}
+
+/** How long a bob that is held still waits to be released, ms; null where nothing waits or the server does not say. */
+export function releaseLeft(run: Run | null, now: number): number | null {
+  const until = run?.state === 'ready' && run.release_until ? Date.parse(run.release_until) : NaN;
+  return Number.isFinite(until) ? Math.max(0, until - now) : null;
+}
+
+/** Changes once only: it is read out whenever it changes. The seconds are counted beside the button. */
+function releaseCall(left: number | null | undefined): string {
+  return typeof left === 'number' && left <= minute
+    ? 'Release it within a minute, or the run ends without a measurement.'
+    : 'Release it when you are ready.';
 }
 
 /** How far the measurement is: seconds done and in all; null while nothing is measured. */
@@ -100,7 +116,7 @@ export function progress(run: Run | null, now: number): { done: number; total: n
 
 /** How a run ended, as a sentence. */
 export function endSentence(run: Run): string {
-  const why = run.reason ? ` ${sentenceCase(run.reason)}` : '';
+  const why = run.reason ? ` ${sentenceCase(reasonText(run, run.reason))}` : '';
   switch (run.state) {
     case 'completed':
       return 'The run is complete.';
@@ -113,6 +129,21 @@ export function endSentence(run: Run): string {
     default:
       return 'The run is under way.';
   }
+}
+
+/** Why it ended, in a student's words. */
+function reasonText(run: Run, reason: string): string {
+  // The analysis says what it lacks; that somebody pressed Stop is what one can do something about.
+  if (run.state === 'failed' && /^samples:/i.test(reason) && stoppedEarly(run)) {
+    return 'Stop came too early for a result: let the bob swing for three periods or more';
+  }
+  return localTimes(inWords(reason.replace(/^[a-z]\w*(\.\w+)*: /, '')));
+}
+
+function stoppedEarly(run: Run): boolean {
+  const wanted = run.parameters['duration_s'] ?? run.duration_s;
+  if (!wanted || !run.started_at || !run.ended_at) return false;
+  return Date.parse(run.ended_at) - Date.parse(run.started_at) < wanted * second - 2 * second;
 }
 
 const stateWords: Record<RunState, string> = {
@@ -128,6 +159,13 @@ const stateWords: Record<RunState, string> = {
 };
 
 export const stateWord = (state: RunState): string => stateWords[state] ?? state;
+
+const order = Object.keys(stateWords);
+
+/** Whether `a` tells of an earlier moment than `b`: of an earlier run, or of an earlier state of the same. */
+export function isOlder(a: Run, b: Run): boolean {
+  return a.id < b.id || (a.id === b.id && order.indexOf(a.state) < order.indexOf(b.state));
+}
 
 function endedInSlot(run: Run, slot: Booking | null): boolean {
   return slot !== null && Date.parse(run.created_at) >= bookingInterval(slot).start;

@@ -152,6 +152,11 @@ export function longestFrom(start: number, bookings: Booking[]): number {
   return end - start;
 }
 
+/** Whether all of it can still be booked: what somebody else took meanwhile, or what is over, cannot. */
+export function canBook(slot: Interval, bookings: Booking[], now: number): boolean {
+  return slot.end > slot.start && slot.end - slot.start <= longestFrom(slot.start, bookings) && slot.start + grain > now;
+}
+
 /** The lengths to choose from. */
 export function lengthsUpTo(most: number): number[] {
   return [5, 10, 15, 20, 30, 45, 60, 90, 120].map((m) => m * minute).filter((ms) => ms <= most);

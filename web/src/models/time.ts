@@ -41,6 +41,14 @@ export function dateTime(at: number, zone = viewerZone(), locale?: string): stri
   return `${date}, ${clockTime(at, zone, locale)}`;
 }
 
+/** The server writes times in UTC; people read their own clock. */
+export function localTimes(text: string): string {
+  return text.replace(/\d{4}-\d\d-\d\dT\d\d:\d\d(:\d\d(\.\d+)?)?Z/g, (stamp) => {
+    const at = Date.parse(stamp);
+    return `${clockTime(at)} ${dayName(at)}`;
+  });
+}
+
 /** A length of time in words, at most two units: `1 h 5 min`, `4 min`, `12 s`. */
 export function duration(ms: number): string {
   const s = Math.max(0, Math.round(ms / second));

@@ -43,12 +43,35 @@ export function inReadingOrder(parameters: Record<string, number>): [string, num
 
 const rigStateWords: Record<Rig['state'], string> = { idle: 'Free', busy: 'In use', offline: 'Switched off' };
 
-export const rigStateWord = (state: Rig['state']): string => rigStateWords[state];
+export type RigTone = 'good' | 'active' | 'bad' | '';
+
+/** A rig that idles is not free while somebody's slot runs, or while it needs somebody; its sentence says so. */
+export function rigBadge(rig: Pick<Rig, 'state' | 'sentence'>, yours = false): { word: string; tone: RigTone } {
+  const word = rigStateWords[rig.state];
+  if (rig.state === 'offline') return { word, tone: 'bad' };
+  if (rig.state === 'busy') return { word, tone: 'active' };
+  if (rig.sentence.startsWith('Needs attention')) return { word: 'Needs attention', tone: 'bad' };
+  if (yours) return { word: 'Yours now', tone: 'active' };
+  return rig.sentence.startsWith('Booked') ? { word: 'Booked', tone: '' } : { word, tone: 'good' };
+}
 export const parameterLabel = (name: string): string => parameterLabels[name] ?? humanise(name);
 export const parameterUnit = (name: string): string => parameterUnits[name] ?? '';
 export const quantityLabel = (name: string): string => quantityLabels[name] ?? humanise(name);
 export const sourceLabel = (name: string): string => sourceLabels[name] ?? humanise(name);
 export const experimentTitle = (name: string): string => (name === 'pendulum' ? 'Foucault pendulum' : humanise(name));
+
+/** A sentence of the server's without names of the wire: `is length_m right?` → `is the length of the pendulum right?` */
+export function inWords(text: string): string {
+  return text.replace(/\b(?:parameters\.)?([a-z]+(?:_[a-z]+)+)\b/g, (whole, name: string) => {
+    const label = parameterLabels[name];
+    return label ? withArticle(label) : whole;
+  });
+}
+
+function withArticle(label: string): string {
+  const words = label.charAt(0).toLowerCase() + label.slice(1);
+  return words.startsWith('how ') || words === 'damping' ? words : `the ${words}`;
+}
 
 /** `string_mass_kg` → `String mass kg` */
 export function humanise(name: string): string {

@@ -36,3 +36,10 @@ it.each([[null], ['<html>'], [{}], [[]]])('has a sentence even for a body of %j'
   expect(problemToError(503, body).message).toContain('The rig does not answer');
   expect(problemToError(500, body).message).toContain('500');
 });
+
+it('keeps calls of the programming interface from people', () => {
+  const errors = [{ field: 'rig', message: "there is no rig 'nope'", cure: 'GET /api/v1/rigs lists them' }];
+  const detail = "rig: there is no rig 'nope'; GET /api/v1/rigs lists them";
+  expect(problemToError(404, { detail, errors }).message).toBe("There is no rig 'nope'.");
+  expect(problemToError(404, { detail: "there is no rig 'nope'; GET /api/v1/rigs lists them" }).message).toBe("There is no rig 'nope'.");
+});

@@ -1,6 +1,6 @@
 import { expect, it } from 'vitest';
 import { readDefinition } from '../../src/api/experiment';
-import { groupParameters, rangeText, readParameters } from '../../src/models/parameters';
+import { groupParameters, rangeText, readParameters, standing } from '../../src/models/parameters';
 
 const definition = readDefinition('pendulum', {
   title: 'Foucault pendulum',
@@ -36,4 +36,10 @@ it('leaves out what only a simulation can change on a real rig', () => {
 it('refuses a definition from which no field can be built', () => {
   expect(() => readDefinition('pendulum', { parameters: [{ name: 'x' }] })).toThrow('without a name or a default');
   expect(readDefinition('other', null)).toEqual({ id: 'other', title: 'other', summary: '', parameters: [] });
+});
+
+it('shows the rig as the last run set it, or else as the definition says', () => {
+  expect(standing({ parameters: { length_m: 0.3, bob_radius_m: 0.1 } }, definition.parameters)).toEqual({ length: 0.3, bobRadius: 0.1 });
+  expect(standing(null, definition.parameters)).toEqual({ length: 1, bobRadius: 0.05 });
+  expect(standing({ parameters: {} }, [])).toEqual({ length: 1, bobRadius: 0.05 });
 });

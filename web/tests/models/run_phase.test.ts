@@ -1,6 +1,6 @@
 import { describe, expect, it } from 'vitest';
 import type { Booking, Rig, Run, RunState } from '../../src/api/types';
-import { endSentence, phaseOf, progress, type Situation } from '../../src/models/run_phase';
+import { endSentence, isOlder, phaseOf, progress, releaseLeft, type Situation } from '../../src/models/run_phase';
 
 const now = Date.parse('2026-11-22T09:10:00Z');
 const rig: Rig = {
@@ -81,4 +81,57 @@ it('knows how far the measurement is', () => {
 it('says how a run ended, with the reason as a sentence', () => {
   expect(endSentence(run('failed', { reason: 'fewer than three periods' }))).toBe('The run failed. Fewer than three periods.');
   expect(endSentence(run('interrupted'))).toContain('The laboratory was restarted.');
+});
+
+describe('the time to release the bob', () => {
+  const until = '2026-11-22T09:15:00Z';
+
+  it('counts down while the bob is held, and only then', () => {
+    expect(releaseLeft(run('ready', { release_until: until }), now)).toBe(300_000);
+    expect(releaseLeft(run('ready', { release_until: until }), Date.parse(until) + 2000)).toBe(0);
+    expect(releaseLeft(run('measuring', { release_until: until }), now)).toBeNull();
+    expect(releaseLeft(null, now)).toBeNull();
+  });
+
+  it('is not spoken of where the server does not tell it', () => {
+    for (const release_until of [null, 'soon']) expect(releaseLeft(run('ready', { release_until }), now)).toBeNull();
+    expect(releaseLeft(run('ready'), now)).toBeNull();
+  });
+
+  it('changes the sentence once, in the last minute', () => {
+    const sentence = (left: number | null) => phaseOf(situation({ run: run('ready'), releaseLeft: left })).sentence;
+    expect(sentence(null)).toBe(sentence(299_000));
+    expect(sentence(59_000)).toContain('within a minute');
+    expect(sentence(1_000)).toBe(sentence(59_000));
+  });
+});
+
+describe('why a run ended', () => {
+  const few = 'samples: the object was seen in 9 of 9 frames; at least 30 are needed, over three periods or more';
+
+  it('says that Stop came too early where it did', () => {
+    const early = run('failed', { reason: few, ended_at: '2026-11-22T09:09:52Z' });
+    expect(endSentence(early)).toContain('Stop came too early');
+    expect(endSentence(early)).not.toMatch(/samples/i);
+  });
+
+  it('blames nobody where the run went to its end', () => {
+    const whole = run('failed', { reason: few, ended_at: '2026-11-22T09:10:25Z' });
+    expect(endSentence(whole)).toContain('The object was seen in 9 of 9 frames');
+  });
+
+  it('names no field', () => {
+    expect(endSentence(run('failed', { reason: 'parameters.length_m: length_m is not what the arc says' })))
+      .toBe('The run failed. The length of the pendulum is not what the arc says.');
+  });
+});
+
+describe('two tellings of a run', () => {
+  it('takes the later moment, whichever comes first', () => {
+    expect(isOlder(run('releasing'), run('measuring'))).toBe(true);
+    expect(isOlder(run('measuring'), run('releasing'))).toBe(false);
+    expect(isOlder(run('ready'), run('ready'))).toBe(false);
+    expect(isOlder(run('completed', { id: 6 }), run('preparing'))).toBe(true);
+    expect(isOlder(run('preparing', { id: 8 }), run('completed'))).toBe(false);
+  });
 });

@@ -1,7 +1,7 @@
 import { describe, expect, it } from 'vitest';
 import type { Booking } from '../../src/api/types';
 import {
-  addDays, cellState, dayCells, gridRows, horizonDays, lengthsUpTo, localDate, longestFrom, nextFree, startOfDay, startsIn,
+  addDays, canBook, cellState, dayCells, gridRows, horizonDays, lengthsUpTo, localDate, longestFrom, nextFree, startOfDay, startsIn,
 } from '../../src/models/slots';
 import { day, hour, minute } from '../../src/models/time';
 
@@ -122,5 +122,11 @@ describe('free time', () => {
     expect(longestFrom(utc('2026-11-22T09:30:00Z'), bookings)).toBe(0);
     expect(longestFrom(utc('2026-11-22T11:00:00Z'), bookings)).toBe(2 * hour);
     expect(lengthsUpTo(25 * minute).map((ms) => ms / minute)).toEqual([5, 10, 15, 20]);
+  });
+
+  it('does not book over what somebody took meanwhile', () => {
+    const slot = { start: utc('2026-11-22T10:00:00Z'), end: utc('2026-11-22T10:10:00Z') };
+    expect(canBook({ ...slot, end: slot.start + 5 * minute }, bookings, now)).toBe(true);
+    expect(canBook(slot, bookings, now)).toBe(false);
   });
 });

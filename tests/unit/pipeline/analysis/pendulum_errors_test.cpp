@@ -13,6 +13,7 @@ namespace {
 using ::testing::Contains;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
+using ::testing::Not;
 
 Error error_of(const Trajectory& path, const PendulumSettings& settings = {}) {
     const auto result = analyse_pendulum(path, settings);
@@ -129,10 +130,12 @@ TEST(PendulumWarnings, NoneForAGoodRun) {
 }
 
 TEST(PendulumWarnings, FewPeriods) {
-    EXPECT_THAT(
-        warnings_of(with_noise(generate({.seconds = 9.0}), 1)),
-        Contains(HasSubstr("periods were recorded"))
-    );
+    const Trajectory path = with_noise(generate({.seconds = 9.0}), 1);
+    const PendulumSettings precise{.length_u_m = 1e-6, .depth_scale_u = 1e-6, .clock_u = 1e-6};
+    EXPECT_THAT(warnings_of(path, precise), Contains(HasSubstr("periods were recorded")));
+    const PendulumSettings rough{.length_u_m = 0.02};
+    EXPECT_THAT(warnings_of(path, rough), Not(Contains(HasSubstr("periods were recorded"))))
+        << "more periods would not help: the length decides";
 }
 
 TEST(PendulumWarnings, SmallSwing) {
@@ -147,8 +150,16 @@ TEST(PendulumWarnings, WrongLength) {
     settings.length_m = 1.1;
     EXPECT_THAT(
         warnings_of(with_noise(generate({.amplitude_deg = 20}), 1), settings),
-        Contains(HasSubstr("but length_m says 1.10 m"))
+        Contains(HasSubstr("but the length given is 1.10 m"))
     );
+}
+
+TEST(PendulumWarnings, GravityOfAnotherPlanet) {
+    const Trajectory path = with_noise(generate({.g = 1.62}), 1);
+    EXPECT_THAT(warnings_of(path), Contains(HasSubstr("not found on the Earth")));
+    EXPECT_THAT(
+        warnings_of(path, {.on_earth = false}), Not(Contains(HasSubstr("not found on the Earth")))
+    ) << "a simulation was asked for it";
 }
 
 TEST(PendulumWarnings, LostFrames) {

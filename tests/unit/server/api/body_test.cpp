@@ -50,6 +50,8 @@ TEST(Query, NamesWhatIsWrong) {
     EXPECT_EQ(unknown.error().field, "befor");
     EXPECT_EQ(unknown.error().cure, "did you mean before?");
     EXPECT_FALSE(query_integer(request, "other", 1, 2)->has_value());
+    request.repeated = "limit";
+    EXPECT_EQ(check_query(request, {"limit", "mine", "befor"}).error().field, "limit");
 }
 
 TEST(ReadBody, NeedsJsonThatIsDeclared) {

@@ -48,16 +48,19 @@ TEST(Tokens, AreLongAndNeverStoredAsTheyAre) {
 
 TEST(LiveTickets, AreGoodOnceForTheirRigAndForHalfAMinute) {
     LiveTickets tickets;
-    const auto ticket = tickets.issue(7, "rig-1", kNow);
+    const auto ticket = tickets.issue({7, "session"}, "rig-1", kNow);
     EXPECT_EQ(ticket.expires, kNow + kTicketLife);
-    EXPECT_EQ(tickets.redeem(ticket.token, "rig-1", kNow + 1), 7);
+    const auto holder = tickets.redeem(ticket.token, "rig-1", kNow + 1);
+    ASSERT_TRUE(holder);
+    EXPECT_EQ(holder->user, 7);
+    EXPECT_EQ(holder->session, "session");
     EXPECT_FALSE(tickets.redeem(ticket.token, "rig-1", kNow + 2));
 
-    const auto other = tickets.issue(7, "rig-1", kNow);
+    const auto other = tickets.issue({7, "session"}, "rig-1", kNow);
     EXPECT_FALSE(tickets.redeem(other.token, "rig-2", kNow));
     EXPECT_FALSE(tickets.redeem(other.token, "rig-1", kNow)) << "used up by the wrong rig";
 
-    const auto old = tickets.issue(7, "rig-1", kNow);
+    const auto old = tickets.issue({7, "session"}, "rig-1", kNow);
     EXPECT_FALSE(tickets.redeem(old.token, "rig-1", kNow + kTicketLife));
     EXPECT_FALSE(tickets.redeem("", "rig-1", kNow));
 }

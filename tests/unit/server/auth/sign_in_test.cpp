@@ -43,6 +43,17 @@ TEST_F(SignInTest, TheFirstAdminIsMadeOnce) {
     EXPECT_FALSE(add_first_admin(store_.users, kNow));
 }
 
+TEST_F(SignInTest, ThereIsAnAdminWhoeverWasAddedBefore) {
+    ASSERT_TRUE(add_account(store_.users, "alice", "Alice", lab::Role::student, kNow));
+    ASSERT_TRUE(add_account(store_.users, "admin", "Not one", lab::Role::staff, kNow));
+    const auto first = add_first_admin(store_.users, kNow);
+    ASSERT_TRUE(first);
+    EXPECT_EQ(first->user.username, "admin-2");
+    EXPECT_EQ(first->user.role, lab::Role::admin);
+    EXPECT_EQ(enter(*first).identity.user.username, "admin-2");
+    EXPECT_FALSE(add_first_admin(store_.users, kNow));
+}
+
 TEST_F(SignInTest, SessionsEndWhenIdleAndInAnyCaseAfterAWeek) {
     const auto session = enter(*add_first_admin(store_.users, kNow));
     EXPECT_TRUE(door_.identify(session.token, kNow + 11 * kHour));

@@ -20,6 +20,18 @@ TEST(Settings, OtherWordsAreRefused) {
     const auto twice = parse_settings({"a=1", "a=2"});
     ASSERT_FALSE(twice);
     EXPECT_EQ(twice.error().field, "a");
+    EXPECT_EQ(
+        parse_settings({"amplitude_deg=abc"}).error().cure,
+        "give a number, e.g. --set amplitude_deg=0.8"
+    );
+}
+
+TEST(Numbers, AreWholeWordsInTheirRange) {
+    const auto check = check_number(0.1, 3600.0);
+    for (const char* word : {"0.1", "3600", "1e2"})
+        EXPECT_EQ(check(word), "") << word;
+    for (const char* word : {"", "nan", "inf", "0", "-1", "3600.1", "1 s", "ten"})
+        EXPECT_EQ(check(word), std::string("is ") + word + "; give a number from 0.1 to 3600");
 }
 
 }  // namespace

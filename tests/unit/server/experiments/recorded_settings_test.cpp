@@ -28,6 +28,7 @@ TEST(RecordedSettings, StandBetweenTheGivenAndTheDefaults) {
     EXPECT_EQ(values->at("bob_radius_m"), 0.03);
     EXPECT_EQ(values->at("latitude_deg"), 45);
     EXPECT_FALSE(values->contains("gravity"));
+    EXPECT_EQ(recorded_truth(pendulum(), recording.path()), (Values{{"gravity", 1.62}}));
 }
 
 TEST(RecordedSettings, AreNotNeeded) {
@@ -35,6 +36,7 @@ TEST(RecordedSettings, AreNotNeeded) {
     const auto values = with_recorded_settings(pendulum(), {}, recording.path());
     ASSERT_TRUE(values);
     EXPECT_EQ(values->at("length_m"), 1.0);
+    EXPECT_TRUE(recorded_truth(pendulum(), recording.path()).empty());
 }
 
 TEST(RecordedSettings, AFileThatMakesNoSenseIsAnError) {
@@ -48,6 +50,8 @@ TEST(RecordedSettings, AFileThatMakesNoSenseIsAnError) {
         const auto values = with_recorded_settings(pendulum(), {}, recording.path());
         ASSERT_FALSE(values) << text;
         EXPECT_EQ(values.error().code, ErrorCode::bad_data);
+        EXPECT_TRUE(recorded_truth(pendulum(), recording.path()).empty());
+        EXPECT_NE(to_text(values.error()).find("experiment.json"), std::string::npos) << text;
     }
 }
 

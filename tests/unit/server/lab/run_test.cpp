@@ -106,7 +106,9 @@ TEST(Permissions, OnlyTheOwnerStartsARunAndOnlyInsideTheSlot) {
 TEST(Permissions, AMeasurementMustFitIntoWhatIsLeftOfTheSlot) {
     EXPECT_TRUE(may_start_run(kOwner, kBooking, 60.0, 108 * kMinute));
     EXPECT_FALSE(may_start_run(kOwner, kBooking, 60.0, 109 * kMinute));
-    EXPECT_FALSE(may_start_run(kOwner, kBooking, 600.0, 100 * kMinute));
+    const auto too_long = may_start_run(kOwner, kBooking, 600.0, 100 * kMinute);
+    ASSERT_FALSE(too_long);
+    EXPECT_EQ(too_long.error().field, "duration_s");
 }
 
 TEST(Permissions, RunsBelongToTheirOwnerAndToTeachers) {

@@ -15,6 +15,14 @@ TEST(ParseTarget, SplitsAndDecodes) {
     EXPECT_EQ(target->query.at("flag"), "");
 }
 
+TEST(ParseTarget, KeepsTheFirstOfARepeatedNameAndSaysThatItIs) {
+    const auto target = parse_target("/runs?limit=1&mine&limit=2");
+    ASSERT_TRUE(target);
+    EXPECT_EQ(target->query.at("limit"), "1");
+    EXPECT_EQ(target->repeated, "limit");
+    EXPECT_EQ(parse_target("/runs?limit=1&mine")->repeated, "");
+}
+
 TEST(ParseTarget, AnEncodedSlashStaysInsideItsSegment) {
     const auto target = parse_target("/a%2Fb/c");
     ASSERT_TRUE(target);

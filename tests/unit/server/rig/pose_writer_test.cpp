@@ -40,6 +40,20 @@ TEST(PoseWriter, ASmallQueueSlowsDownAndLosesNothing) {
     EXPECT_EQ(store->poses.count(run.id), 200U);
 }
 
+TEST(PoseWriter, TheRunsFramesAreStoredWithItsPoses) {
+    test::TemporaryStore store;
+    const auto booking = store.add_booking(store.add_user("ada"), kNoon, kNoon + 30 * kMinute);
+    const auto run = store.add_run(booking);
+    PoseWriter writer(store->poses);
+    for (TimeNs t = 0; t < 100; ++t)
+        writer.append(run.id, pose(t), store::FrameCounts{t + 1, t / 50});
+    writer.flush();
+    EXPECT_EQ(store->runs.find(run.id)->frames, 100);
+    EXPECT_EQ(store->runs.find(run.id)->frames_lost, 1);
+    store->poses.append(run.id, {}, store::FrameCounts{7, 0});
+    EXPECT_EQ(store->runs.find(run.id)->frames, 100) << "counts never go back";
+}
+
 TEST(PoseWriter, TellsWhenPosesCouldNotBeStored) {
     test::TemporaryStore store;
     PoseWriter writer(store->poses);

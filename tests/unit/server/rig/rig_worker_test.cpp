@@ -63,7 +63,8 @@ protected:
         lab::Run run = TemporaryStore::run_for(booking_, rig_.now());
         run.parameters = {{"length_m", 1.0}, {"bob_radius_m", 0.05}, {"amplitude_deg", 10.0}};
         run.duration_s = duration_s;
-        const auto started = worker_.start(run, kBob, rig_.now() + ready_for);
+        run.release_until = rig_.now() + ready_for;
+        const auto started = worker_.start(run, kBob);
         ASSERT_TRUE(started) << to_text(started.error());
         run_ = started->id;
     }
@@ -214,8 +215,7 @@ TEST_F(RigWorkerTest, CommandsInTheWrongStateAreConflicts) {
     EXPECT_EQ(command(RunEvent::measured).error().code, ErrorCode::conflict);
     EXPECT_FALSE(worker_.advance(*run_ + 1, {RunEvent::abort, kNoon, "", {}}));
     EXPECT_EQ(
-        worker_.start(TemporaryStore::run_for(booking_), kBob, kNoon).error().code,
-        ErrorCode::conflict
+        worker_.start(TemporaryStore::run_for(booking_), kBob).error().code, ErrorCode::conflict
     );
 }
 
@@ -247,7 +247,7 @@ TEST_F(RigWorkerTest, ABobThatIsNotLetGoFailsTheRun) {
     ASSERT_TRUE(step_until_state(RunState::ready));
     rig_.deaf = true;
     ASSERT_TRUE(command(RunEvent::release_commanded));
-    ASSERT_TRUE(step_until_state(RunState::failed, 10.0));
+    ASSERT_TRUE(step_until_state(RunState::failed, 20.0));
     EXPECT_NE(run().reason.find("release"), std::string::npos);
 }
 
@@ -292,8 +292,7 @@ TEST_F(RigWorkerTest, ADeviceThatIsNotThereIsTriedAgain) {
     EXPECT_NE(worker_.status().sentence.find("no such device"), std::string::npos);
     EXPECT_FALSE(worker_.picture());
     EXPECT_EQ(
-        worker_.start(TemporaryStore::run_for(booking_), kBob, kNoon).error().code,
-        ErrorCode::unavailable
+        worker_.start(TemporaryStore::run_for(booking_), kBob).error().code, ErrorCode::unavailable
     );
     EXPECT_TRUE(store_->runs.list({}).empty());
     rig_.absent = false;

@@ -38,6 +38,7 @@ TEST_F(RunsTest, KeepWhatTheyWereStartedWith) {
     EXPECT_EQ(found->parameters, (lab::Parameters{{"length_m", 1.0}}));
     EXPECT_EQ(found->definition_json, R"({"id": "pendulum"})");
     EXPECT_EQ(found->created, kNoon);
+    EXPECT_EQ(found->release_until, kNoon + 5 * kMinute);
     EXPECT_FALSE(found->started);
     EXPECT_FALSE(found->ended);
     EXPECT_FALSE(store_->runs.find(run.id + 1));
