@@ -27,6 +27,8 @@ struct TrackQuality {
 struct TrackSample {
     TimeNs t = 0;
     std::uint32_t object = 0;  ///< Index into the list of objects that the tracker was given.
+    /// Which of the things that go by that object's name, from 1; 0 where it is one thing alone.
+    std::uint32_t identity = 0;
     TrackStatus status = TrackStatus::lost;
     bool has_orientation = false;  ///< False where the shape does not show it: q is identity then.
     Eigen::Vector3d p_cam = Eigen::Vector3d::Zero();  ///< m

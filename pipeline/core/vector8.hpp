@@ -5,7 +5,8 @@
 /// Eight floats side by side, for loops that work on eight neighbouring pixels at once. The
 /// compiler makes AVX2 or pairs of SSE operations of them, whichever the surrounding
 /// KINECTLAB_HOT_LOOP is compiled for; so everything here is inlined there. Include in .cpp files
-/// only.
+/// only. In memory that a loop is given they must lie in a struct with alignas(32): outside of AVX2
+/// code their own alignment is 16.
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wpsabi"  // about passing them to functions that are not inlined
 

@@ -74,24 +74,30 @@ KINECTLAB_HOT_LOOP void limits_of(
     std::uint16_t* __restrict reach,
     int width,
     float product,
-    float cut_counts
+    float cut,
+    float cut_per_column
 ) {
     const float *a = rows[0], *b = rows[1], *c = rows[2], *d = rows[3], *e = rows[4];
     for (int x = 0; x < width; ++x) {
-        const float nearest = std::max(std::max(std::max(a[x], b[x]), std::max(d[x], e[x])), c[x]);
-        // Division by 0, where nothing is known, is no limit but the cut.
-        const float counts = std::min(cut_counts, product / nearest);
+        const float scene = std::max(std::max(std::max(a[x], b[x]), std::max(d[x], e[x])), c[x]);
+        const float end = std::max(0.0F, cut + cut_per_column * static_cast<float>(x));
+        const float nearest = std::max(scene, end);
+        // Division by 0, where nothing is known and nothing cut away, is no limit.
+        const float counts = std::min(kNoLimit, product / nearest);
         reach[x] = static_cast<std::uint16_t>(static_cast<int>(std::max(counts, 1.0F)) - 1);
     }
 }
 
 }  // namespace
 
-ChangeLimits::ChangeLimits(const RgbdCamera& camera, double threshold_steps)
+ChangeLimits::ChangeLimits(
+    const RgbdCamera& camera, double threshold_steps, const DepthCutSettings& cut
+)
     : width_(camera.depth.width),
       height_(camera.depth.height),
       scale_(camera),
-      threshold_steps_(static_cast<float>(threshold_steps)) {
+      threshold_steps_(static_cast<float>(threshold_steps)),
+      cut_settings_(cut) {
     const auto row = static_cast<std::size_t>(width_), rows = static_cast<std::size_t>(height_);
     reach_.assign(row * rows, 0);
     trusted_.assign(row * rows, 1);
@@ -100,11 +106,14 @@ ChangeLimits::ChangeLimits(const RgbdCamera& camera, double threshold_steps)
     filled_.assign(row, 0.0F);
 }
 
-void ChangeLimits::rebuild(const ReferenceScene& reference) {
-    cut_steps_ = wall_cut_steps(reference.disparity());
+void ChangeLimits::rebuild(const SceneView& reference) {
+    cut_ = std::nullopt;
+    if (cut_settings_.method == CutMethod::wall) cut_ = wall_cut(reference.disparity, width_);
+    if (cut_settings_.method == CutMethod::fixed)
+        cut_ = DepthCut{scale_.steps_at(cut_settings_.farthest_m), 0.0, 0.0};
     slack_of(
-        reference.variance().data(),
-        reference.seen().data(),
+        reference.variance.data(),
+        reference.seen.data(),
         slack_.data(),
         slack_.size(),
         threshold_steps_
@@ -112,7 +121,7 @@ void ChangeLimits::rebuild(const ReferenceScene& reference) {
     update(reference, {0, height_});
 }
 
-void ChangeLimits::update(const ReferenceScene& reference, RowRange rows) {
+void ChangeLimits::update(const SceneView& reference, RowRange rows) {
     const auto row_of = [this](int row) {
         return static_cast<std::size_t>(row) * static_cast<std::size_t>(width_);
     };
@@ -123,8 +132,7 @@ void ChangeLimits::update(const ReferenceScene& reference, RowRange rows) {
             std::span(nearest_rows_).subspan(row_of(row), static_cast<std::size_t>(width_))
         );
 
-    const float cut_counts =
-        cut_steps_ ? static_cast<float>(scale_.product / *cut_steps_) : kNoLimit;
+    const DepthCut cut = cut_.value_or(DepthCut{});
     const int first = std::max(0, rows.first - kJitterPx);
     const int last = std::min(height_, rows.last + kJitterPx);
     for (int row = first; row < last; ++row) {
@@ -137,15 +145,16 @@ void ChangeLimits::update(const ReferenceScene& reference, RowRange rows) {
             reach_.data() + row_of(row),
             width_,
             static_cast<float>(scale_.product),
-            std::min(cut_counts, kNoLimit)
+            static_cast<float>(cut.steps(0, row)),
+            static_cast<float>(cut.per_column)
         );
     }
 }
 
-void ChangeLimits::nearest_row(const ReferenceScene& reference, int row, std::span<float> nearest) {
+void ChangeLimits::nearest_row(const SceneView& reference, int row, std::span<float> nearest) {
     const auto size = static_cast<std::size_t>(width_);
     const auto first = static_cast<std::size_t>(row) * size;
-    const auto disparity = reference.disparity().subspan(first, size);
+    const auto disparity = reference.disparity.subspan(first, size);
     std::copy(disparity.begin(), disparity.end(), filled_.begin());
     fill_holes(filled_, std::span(trusted_).subspan(first, size));
     const auto rounding = static_cast<float>(scale_.rounding_steps(1.0));

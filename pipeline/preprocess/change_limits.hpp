@@ -6,7 +6,9 @@
 #include <vector>
 
 #include "pipeline/core/disparity.hpp"
+#include "pipeline/preprocess/depth_cut.hpp"
 #include "pipeline/preprocess/reference.hpp"
+#include "pipeline/preprocess/settings.hpp"
 
 namespace kinectlab {
 
@@ -15,27 +17,30 @@ namespace kinectlab {
 /// Stored less one, because then `depth - 1 < reach` in 16 bits is all of it (0 - 1 = 65535).
 class ChangeLimits {
 public:
-    ChangeLimits(const RgbdCamera& camera, double threshold_steps);
+    ChangeLimits(
+        const RgbdCamera& camera, double threshold_steps, const DepthCutSettings& cut = {}
+    );
 
     /// All rows, and the depth cut anew.
-    void rebuild(const ReferenceScene& reference);
+    void rebuild(const SceneView& reference);
     /// Some rows after the reference followed the scene there; the cut and each pixel's noise stay.
-    void update(const ReferenceScene& reference, RowRange rows);
+    void update(const SceneView& reference, RowRange rows);
 
     [[nodiscard]] std::span<const std::uint16_t> reach() const { return reach_; }
     /// 1 where a change can be believed: the scene was seen there, or nothing is there far and
     /// wide. 0 in narrow holes: at edges and in shadows sensors see phantoms that come and go.
     [[nodiscard]] std::span<const std::uint8_t> trusted() const { return trusted_; }
-    [[nodiscard]] std::optional<double> cut_steps() const { return cut_steps_; }
+    [[nodiscard]] const std::optional<DepthCut>& cut() const { return cut_; }
 
 private:
-    void nearest_row(const ReferenceScene& reference, int row, std::span<float> nearest);
+    void nearest_row(const SceneView& reference, int row, std::span<float> nearest);
     static void fill_holes(std::span<float> row, std::span<std::uint8_t> trusted);
 
     int width_, height_;
     DisparityScale scale_;
     float threshold_steps_;
-    std::optional<double> cut_steps_;
+    DepthCutSettings cut_settings_;
+    std::optional<DepthCut> cut_;
     std::vector<std::uint16_t> reach_;
     std::vector<std::uint8_t> trusted_;
     std::vector<float> slack_, nearest_rows_, filled_;

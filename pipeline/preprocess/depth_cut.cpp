@@ -3,7 +3,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
 #include <numeric>
+#include <vector>
+
+#include <Eigen/Cholesky>
 
 namespace kinectlab {
 namespace {
@@ -12,16 +16,36 @@ constexpr int kBins = 1024;            // one step each: everything beyond 0.34 
 constexpr int kHalfWindow = 3;         // a flat wall's readings spread over these bins
 constexpr double kWallShare = 0.10;    // of the readings at least, in the window
 constexpr double kBehindShare = 0.05;  // of the readings at most, behind the wall
-constexpr double kFootShare = 0.05;    // of the peak's height: there the peak ends
-constexpr int kMaxReach = 12;          // steps from the peak to its near foot
+constexpr double kFootShare = 0.01;    // of the peak's height: there the peak ends
+constexpr int kMaxReach = 12;          // steps from the peak to where it ends
+constexpr int kSharp = 4;              // a peak that ends nearer is a wall across the optical axis
+
+constexpr std::size_t kMostSamples = 8192;  // of the picture, for a slanted wall
+constexpr double kBaseline_px = 32.0;       // over which slopes are taken: noise of 0.025 steps/px
+constexpr int kSlopeBins = 64;
+constexpr double kSlopeBin = 0.02;   // steps a pixel
+constexpr int kCandidates = 3;       // planes tried
+constexpr double kLensShare = 0.82;  // focal length of such cameras, of the picture's width
+constexpr double kMostTilt = 1.7;    // tan 60°
+constexpr std::array kGates{12.0, 6.0, 3.0, 3.0};  // steps about the plane, fit by fit
 
 using Histogram = std::array<int, kBins>;
 
+/// Four counters for each bin in turn: neighbours fall in the same bin, and one counter would wait
+/// for itself.
 Histogram histogram_of(std::span<const float> disparity) {
-    Histogram bins{};
-    for (const float s : disparity)
-        if (s > 0.0F && s < static_cast<float>(kBins)) ++bins[static_cast<std::size_t>(s)];
-    return bins;
+    std::array<Histogram, 4> bins{};
+    const auto count = [&](std::size_t i) {
+        const int bin = static_cast<int>(disparity[i]);
+        if (bin >= 0 && bin < kBins) ++bins[i % 4][static_cast<std::size_t>(bin)];
+    };
+    for (std::size_t i = 0; i < disparity.size(); ++i)
+        count(i);
+    Histogram all = bins[0];
+    for (std::size_t bin = 0; bin < kBins; ++bin)
+        all[bin] += bins[1][bin] + bins[2][bin] + bins[3][bin];
+    all[0] = 0;  // no reading
+    return all;
 }
 
 int window_sum(const Histogram& bins, int centre) {
@@ -41,22 +65,203 @@ std::optional<int> farthest_peak(const Histogram& bins, double total) {
     return std::nullopt;
 }
 
-}  // namespace
+struct Peak {
+    int top = 0;
+    int foot = 0;  ///< first bin that is not cut away
+};
 
-std::optional<double> wall_cut_steps(std::span<const float> disparity) {
-    const Histogram bins = histogram_of(disparity);
+/// The far wall's peak, if it ends on both sides and little lies behind it.
+std::optional<Peak> wall_peak(const Histogram& bins) {
     const double total = std::accumulate(bins.begin(), bins.end(), 0.0);
-    const auto peak = farthest_peak(bins, total);
-    if (total == 0.0 || !peak) return std::nullopt;
+    const auto centre = farthest_peak(bins, total);
+    if (total == 0.0 || !centre) return std::nullopt;
+    const auto first = bins.begin() + std::max(0, *centre - kHalfWindow);
+    const auto last = bins.begin() + std::min(kBins - 1, *centre + kHalfWindow);
+    const int top = static_cast<int>(std::max_element(first, last + 1) - bins.begin());
 
-    const int far_side = std::max(0, *peak - 2 * kHalfWindow);
+    const int far_side = std::max(0, top - 2 * kHalfWindow);
     const double behind = std::accumulate(bins.begin(), bins.begin() + far_side, 0.0);
     if (behind > kBehindShare * total) return std::nullopt;
 
-    const double height = window_sum(bins, *peak) / (2.0 * kHalfWindow + 1.0);
-    for (int bin = *peak; bin < std::min(kBins, *peak + kMaxReach); ++bin)
-        if (bins[static_cast<std::size_t>(bin)] < kFootShare * height) return bin + 1.0;
-    return std::nullopt;
+    const double height = bins[static_cast<std::size_t>(top)];
+    const auto ends = [&](int bin) {
+        return bin < 0 || bin >= kBins || bins[static_cast<std::size_t>(bin)] < kFootShare * height;
+    };
+    int far = 1, near = 1;
+    while (far < kMaxReach && !ends(top - far))
+        ++far;
+    while (near < kMaxReach && !ends(top + near))
+        ++near;
+    if (far == kMaxReach) return std::nullopt;
+    // One bin more, because the top lies anywhere in its own.
+    return Peak{top, top + std::min(near, far + 1) + 1};
+}
+
+struct Sample {
+    double u, v, s;
+};
+
+/// s = a u + b v + c, steps.
+struct Plane {
+    double a = 0.0, b = 0.0, c = 0.0;
+    [[nodiscard]] double off(const Sample& p) const { return p.s - a * p.u - b * p.v - c; }
+};
+
+class SlantedWall {
+public:
+    SlantedWall(std::span<const float> disparity, int width, int column_step)
+        : disparity_(disparity), width_(width), column_step_(column_step) {
+        const std::size_t step = std::max<std::size_t>(1, disparity.size() / kMostSamples) | 1U;
+        for (std::size_t i = 0; i < disparity.size(); i += step)
+            if (disparity[i] > 0.0F) samples_.push_back(at(i));
+    }
+
+    std::optional<DepthCut> find() {
+        if (samples_.size() < kMostSamples / 16) return std::nullopt;
+        vote();
+        for (int k = 0; k < kCandidates; ++k)
+            if (const auto slope = next_slope())
+                if (const auto cut = cut_along(*slope)) return cut;
+        return std::nullopt;
+    }
+
+    /// A wall whose plane is nearly that of the histogram's peak.
+    std::optional<DepthCut> find_near(double steps) {
+        if (samples_.size() < kMostSamples / 16) return std::nullopt;
+        return refined({0.0, 0.0, steps});
+    }
+
+private:
+    [[nodiscard]] Sample at(std::size_t i) const {
+        const auto width = static_cast<std::size_t>(width_);
+        return {
+            static_cast<double>(i % width) * column_step_,
+            static_cast<double>(i / width),
+            disparity_[i]};
+    }
+
+    /// Every sample votes for the slopes to the reading right of it and to that below.
+    void vote() {
+        const int across = std::max(1, static_cast<int>(kBaseline_px) / column_step_);
+        const auto down = static_cast<std::size_t>(kBaseline_px) * static_cast<std::size_t>(width_);
+        votes_.assign(kSlopeBins * kSlopeBins, 0);
+        for (const auto& p : samples_) {
+            const auto column = static_cast<int>(p.u) / column_step_;
+            const auto i = static_cast<std::size_t>(p.v) * static_cast<std::size_t>(width_) +
+                           static_cast<std::size_t>(column);
+            if (column + across >= width_ || i + down >= disparity_.size()) continue;
+            const double right = disparity_[i + static_cast<std::size_t>(across)];
+            const double below = disparity_[i + down];
+            if (right <= 0.0 || below <= 0.0) continue;
+            const auto bin = [](double slope) {
+                return static_cast<int>(std::floor(slope / kSlopeBin)) + kSlopeBins / 2;
+            };
+            const int a = bin((right - p.s) / (across * column_step_));
+            const int b = bin((below - p.s) / kBaseline_px);
+            if (a < 0 || b < 0 || a >= kSlopeBins || b >= kSlopeBins) continue;
+            ++votes_[static_cast<std::size_t>(b * kSlopeBins + a)];
+        }
+    }
+
+    /// The slopes with most votes, which are then taken away.
+    std::optional<Plane> next_slope() {
+        double most = 0.0;
+        int best_a = 0, best_b = 0;
+        for (int b = 1; b + 1 < kSlopeBins; ++b)
+            for (int a = 1; a + 1 < kSlopeBins; ++a) {
+                const double votes = around(a, b, [](int& v) { return v; });
+                if (votes <= most) continue;
+                most = votes;
+                best_a = a;
+                best_b = b;
+            }
+        if (most < kWallShare * static_cast<double>(samples_.size()) / 4.0) return std::nullopt;
+        around(best_a, best_b, [](int& v) { return v = 0; });
+        const auto slope = [](int bin) {
+            return (bin - kSlopeBins / 2 + 0.5) * kSlopeBin;
+        };
+        return Plane{slope(best_a), slope(best_b), 0.0};
+    }
+
+    template <class Take>
+    double around(int a, int b, Take take) {
+        double sum = 0.0;
+        for (int y = b - 1; y <= b + 1; ++y)
+            for (int x = a - 1; x <= a + 1; ++x)
+                sum += take(votes_[static_cast<std::size_t>(y * kSlopeBins + x)]);
+        return sum;
+    }
+
+    /// Histogram about a plane through the middle of the picture; `c` is where its middle lies.
+    [[nodiscard]] Histogram histogram_about(const Plane& plane) const {
+        Histogram bins{};
+        for (const auto& p : samples_) {
+            const int bin = static_cast<int>(std::floor(plane.off(p))) + kBins / 2;
+            if (bin >= 0 && bin < kBins) ++bins[static_cast<std::size_t>(bin)];
+        }
+        return bins;
+    }
+
+    std::optional<DepthCut> cut_along(Plane plane) {
+        const Sample middle = at(disparity_.size() / 2 + static_cast<std::size_t>(width_ / 2));
+        plane.c = 200.0 - plane.a * middle.u - plane.b * middle.v;  // within the histogram's range
+        const Histogram bins = histogram_about(plane);
+        // The slopes are known to a bin only, so that the peak is flat: its farthest half will do.
+        const auto peak = farthest_peak(bins, static_cast<double>(samples_.size()));
+        if (!peak) return std::nullopt;
+        plane.c += *peak - kBins / 2 + 0.5;
+        return refined(plane);
+    }
+
+    std::optional<DepthCut> refined(Plane plane) {
+        for (const double gate : kGates) {
+            Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
+            Eigen::Vector3d right = Eigen::Vector3d::Zero();
+            for (const auto& p : samples_) {
+                if (std::abs(plane.off(p)) > gate) continue;
+                const Eigen::Vector3d row{p.u / 100.0, p.v / 100.0, 1.0};
+                normal += row * row.transpose();
+                right += p.s * row;
+            }
+            const auto solver = normal.ldlt();
+            if (normal(2, 2) < 50.0 || solver.info() != Eigen::Success) return std::nullopt;
+            const Eigen::Vector3d x = solver.solve(right);
+            if (!x.allFinite()) return std::nullopt;
+            plane = {x.x() / 100.0, x.y() / 100.0, x.z()};
+        }
+        if (grazing(plane)) return std::nullopt;
+        const auto peak = wall_peak(histogram_about(plane));
+        if (!peak || std::abs(peak->top - kBins / 2) > kHalfWindow) return std::nullopt;
+        return DepthCut{plane.c + peak->foot - kBins / 2, plane.a, plane.b};
+    }
+
+    /// A plane's normal is (a f, b f, value in the middle of the picture), unscaled.
+    [[nodiscard]] bool grazing(const Plane& plane) const {
+        const Sample middle = at(disparity_.size() / 2 + static_cast<std::size_t>(width_ / 2));
+        const double ahead = plane.a * middle.u + plane.b * middle.v + plane.c;
+        const double f = kLensShare * width_ * column_step_;
+        return ahead <= 0.0 || f * std::hypot(plane.a, plane.b) > kMostTilt * ahead;
+    }
+
+    std::span<const float> disparity_;
+    int width_, column_step_;
+    std::vector<Sample> samples_;
+    std::vector<int> votes_;
+};
+
+}  // namespace
+
+std::optional<DepthCut> wall_cut(std::span<const float> disparity, int width, int column_step) {
+    if (disparity.empty() || width < 1) return std::nullopt;
+    const auto peak = wall_peak(histogram_of(disparity));
+    const std::optional<DepthCut> level =
+        peak ? std::optional(DepthCut{static_cast<double>(peak->foot), 0.0, 0.0}) : std::nullopt;
+    if (peak && peak->foot - peak->top <= kSharp) return level;
+    SlantedWall slanted(disparity, width, column_step);
+    if (peak)
+        if (const auto cut = slanted.find_near(peak->top + 0.5)) return cut;
+    if (const auto cut = slanted.find()) return cut;
+    return level;
 }
 
 }  // namespace kinectlab

@@ -68,6 +68,14 @@ void ReferenceScene::reset() {
     next_strip_ = 0;
 }
 
+void ReferenceScene::assign(const SceneView& scene) {
+    reset();
+    std::copy(scene.disparity.begin(), scene.disparity.end(), disparity_.begin());
+    std::copy(scene.variance.begin(), scene.variance.end(), variance_.begin());
+    std::copy(scene.seen.begin(), scene.seen.end(), seen_.begin());
+    learned_frames_ = 1;
+}
+
 float ReferenceScene::band(float s) const {
     return kBandSigmas * (sigma_ + rounding_ * s * s);
 }

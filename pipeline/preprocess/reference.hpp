@@ -6,6 +6,7 @@
 
 #include "pipeline/core/camera.hpp"
 #include "pipeline/core/disparity.hpp"
+#include "pipeline/preprocess/scene_view.hpp"
 
 namespace kinectlab {
 
@@ -32,8 +33,12 @@ public:
     /// says which rows those were. Never moves a pixel nearer by more than drift.
     RowRange follow(std::span<const std::uint16_t> depth);
 
+    /// Starts from a scene that is known already, as if it had been learned.
+    void assign(const SceneView& scene);
+
     void reset();
 
+    [[nodiscard]] SceneView view() const { return {disparity_, variance_, seen_}; }
     [[nodiscard]] int width() const { return width_; }
     [[nodiscard]] int height() const { return height_; }
     [[nodiscard]] std::size_t learned_frames() const { return learned_frames_; }

@@ -3,24 +3,13 @@
 #include <algorithm>
 #include <cmath>
 
-#include "pipeline/preprocess/change.hpp"
-#include "pipeline/preprocess/change_limits.hpp"
-#include "pipeline/preprocess/reference.hpp"
-#include "pipeline/preprocess/segment.hpp"
+#include "pipeline/preprocess/preprocessing.hpp"
 #include "pipeline/track/tracker.hpp"
 
 namespace kinectlab {
 namespace {
 
 using Trackers = std::vector<std::unique_ptr<Tracker>>;
-
-ChangeSettings change_settings(const RgbdCamera& camera) {
-    ChangeSettings settings;
-    settings.width = camera.depth.width;
-    settings.height = camera.depth.height;
-    settings.product = static_cast<float>(DisparityScale(camera).product);
-    return settings;
-}
 
 Result<void> check(const ChainSettings& settings) {
     const auto& camera = settings.camera;
@@ -37,17 +26,15 @@ Result<void> check(const ChainSettings& settings) {
           camera.depth.fy,
           camera.depth_unit_m,
           camera.noise.inverse_depth_step,
-          camera.noise.sigma_steps,
-          settings.change_threshold_steps})
+          camera.noise.sigma_steps})
         if (!std::isfinite(value) || value <= 0.0)
             return fail(
                 ErrorCode::invalid_argument,
                 "camera",
-                "a focal length, depth unit, noise or the change threshold is " +
-                    std::to_string(value),
+                "a focal length, depth unit or noise is " + std::to_string(value),
                 "all of them are above 0"
             );
-    return {};
+    return check(settings.preprocess);
 }
 
 }  // namespace
@@ -55,14 +42,10 @@ Result<void> check(const ChainSettings& settings) {
 struct Chain::State {
     State(const ChainSettings& settings, Trackers made)
         : camera(settings.camera),
-          reference(settings.camera),
-          limits(settings.camera, settings.change_threshold_steps),
-          change(change_settings(settings.camera)),
-          segmenter(change, settings.min_segment_points),
+          preprocessing(settings.camera, settings.preprocess),
           trackers(std::move(made)) {
         for (const auto& object : settings.objects)
             if (kinectlab::needs_colour(object)) needs_colour = object.name;
-        runs.reserve(most_runs(change));
         samples.reserve(
             settings.objects.size() * static_cast<std::size_t>(Segmenter::kMaxSegments)
         );
@@ -103,15 +86,10 @@ struct Chain::State {
     }
 
     RgbdCamera camera;
+    Preprocessing preprocessing;
     std::string needs_colour;  // name of an object that does; empty if none
     bool had_colour = false;
-    ReferenceScene reference;
-    ChangeLimits limits;
-    bool limits_are_old = true;
-    ChangeSettings change;
-    Segmenter segmenter;
     Trackers trackers;
-    std::vector<ChangedRun> runs;
     std::vector<TrackSample> samples;
 };
 
@@ -129,8 +107,7 @@ Result<Chain> Chain::create(ChainSettings settings) {
 
 Result<void> Chain::learn(const RgbdFrame& frame) {
     if (auto ok = state_->check_size(frame); !ok) return ok;
-    state_->reference.learn(frame.depth);
-    state_->limits_are_old = true;
+    state_->preprocessing.learn(frame);
     return {};
 }
 
@@ -138,39 +115,38 @@ Result<std::span<const TrackSample>> Chain::track(const RgbdFrame& frame) {
     State& s = *state_;
     if (auto ok = s.check_size(frame); !ok) return tl::unexpected(ok.error());
     if (auto ok = s.check_colour(frame); !ok) return tl::unexpected(ok.error());
-    if (s.reference.learned_frames() == 0)
+    if (s.preprocessing.learned_frames() == 0)
         return fail(
             ErrorCode::conflict,
             "reference",
             "no frame of the scene was learned yet",
             "learn at least one frame before tracking"
         );
-    if (s.limits_are_old) s.limits.rebuild(s.reference);
-    s.limits_are_old = false;
-
-    find_changed(frame.depth, s.limits.reach(), s.change, s.runs);
-    const auto segments = s.segmenter.segment(frame.depth, s.limits.trusted(), s.runs);
+    const auto clean = s.preprocessing.clean(frame);
+    if (!clean) return tl::unexpected(clean.error());
+    const auto moved = s.preprocessing.moved(**clean);
+    if (!moved) return tl::unexpected(moved.error());
     s.samples.clear();
     for (const auto& tracker : s.trackers)
-        tracker->track(frame, segments, s.samples);
+        tracker->track(**clean, *moved, s.samples);
     std::sort(s.samples.begin(), s.samples.end(), [](const TrackSample& a, const TrackSample& b) {
-        return a.object != b.object ? a.object < b.object : a.quality.points > b.quality.points;
+        if (a.object != b.object) return a.object < b.object;
+        if (a.quality.points != b.quality.points) return a.quality.points > b.quality.points;
+        return a.identity < b.identity;
     });
 
-    const RowRange followed = s.reference.follow(frame.depth);
-    s.limits.update(s.reference, followed);
+    s.preprocessing.follow(frame);
     return std::span<const TrackSample>(s.samples);
 }
 
 void Chain::reset() {
-    state_->reference.reset();
-    state_->limits_are_old = true;
+    state_->preprocessing.reset();
     for (const auto& tracker : state_->trackers)
         tracker->reset();
 }
 
 std::size_t Chain::learned_frames() const {
-    return state_->reference.learned_frames();
+    return state_->preprocessing.learned_frames();
 }
 
 }  // namespace kinectlab

@@ -9,6 +9,7 @@
 #include "pipeline/core/error.hpp"
 #include "pipeline/core/frame.hpp"
 #include "pipeline/core/track_sample.hpp"
+#include "pipeline/preprocess/settings.hpp"
 #include "pipeline/track/object_spec.hpp"
 
 namespace kinectlab {
@@ -16,21 +17,20 @@ namespace kinectlab {
 struct ChainSettings {
     RgbdCamera camera;
     std::vector<ObjectSpec> objects;
-    double change_threshold_steps = 4.0;  ///< disparity steps nearer than the reference = moved
-    int min_segment_points = 60;          ///< fewer changed neighbours are noise
+    PreprocessSettings preprocess;
 };
 
-/// Frames in, poses out: cut → change → segments → track. No allocation once warm.
-/// Not thread-safe: one thread owns a chain.
+/// Frames in, poses out: clean → cut → change → segments → track. No allocation once warm, with the
+/// pre-processing's defaults. Not thread-safe: one thread owns a chain.
 ///
-/// The reference scene is learned, then kept: feed frames of the scene with learn(), any number,
-/// also while the object is held somewhere or swings; a pixel's reference is its farthest stable
-/// reading, because an object can only come in front of what is there. track() goes on learning
-/// where a pixel shows something persistently farther, so that an object that rested in the first
-/// frames does not leave a hole in its own path.
+/// The reference scene (ReferenceMethod::scene) is learned, then kept: feed frames of the scene
+/// with learn(), any number, also while the object is held somewhere or swings; a pixel's reference
+/// is its farthest stable reading, because an object can only come in front of what is there.
+/// track() goes on learning where a pixel shows something persistently farther, so that an object
+/// that rested in the first frames does not leave a hole in its own path.
 class Chain {
 public:
-    /// Refuses unknown methods, radii that are not positive, no objects.
+    /// Refuses settings out of range, unknown methods, radii that are not positive, no objects.
     [[nodiscard]] static Result<Chain> create(ChainSettings settings);
 
     Chain(Chain&&) noexcept;
@@ -40,8 +40,8 @@ public:
     /// A frame whose size does not fit the camera is refused.
     [[nodiscard]] Result<void> learn(const RgbdFrame& frame);
 
-    /// One sample for each object (method "change": one for each moving segment, biggest first);
-    /// status is tracked or lost. The span is valid until the next call.
+    /// One sample for each object (method "change": one for each thing known, biggest first, with
+    /// its identity); status is tracked or lost. The span is valid until the next call.
     [[nodiscard]] Result<std::span<const TrackSample>> track(const RgbdFrame& frame);
 
     /// Forgets the reference: the camera or the scene was moved.

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "pipeline/core/disparity.hpp"
+#include "pipeline/track/identities.hpp"
 
 namespace kinectlab {
 namespace {
@@ -10,55 +10,63 @@ namespace {
 class ChangeTracker : public Tracker {
 public:
     ChangeTracker(const RgbdCamera& camera, TrackedObjects<ChangeTrackSettings> objects)
-        : camera_(camera), scale_(camera), objects_(std::move(objects)) {}
+        : lens_(camera.depth) {
+        for (auto& object : objects)
+            followed_.push_back({object.index, Identities(camera, object.settings.memory_s)});
+    }
 
     void track(
         const RgbdFrame& frame,
         std::span<const MovedPixels> moved,
         std::vector<TrackSample>& samples
     ) override {
-        for (const auto& object : objects_)
-            for (const auto& pixels : moved)
-                samples.push_back(centroid(frame, pixels, object.index));
+        for (auto& [object, identities] : followed_)
+            for (const Thing& thing : identities.follow(frame, moved))
+                samples.push_back(sample_of(thing, frame.t, object));
     }
 
-    void reset() override {}
+    void reset() override {
+        for (auto& [object, identities] : followed_)
+            identities.reset();
+    }
 
 private:
-    [[nodiscard]] TrackSample centroid(
-        const RgbdFrame& frame, MovedPixels pixels, std::uint32_t object
-    ) const {
-        Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-        Eigen::Matrix3d noise = Eigen::Matrix3d::Zero();
-        for (const auto pixel : pixels) {
-            const auto column = static_cast<int>(pixel) % camera_.depth.width;
-            const auto row = static_cast<int>(pixel) / camera_.depth.width;
-            const double s = scale_.steps(frame.depth[pixel]);
-            const double z = scale_.metres(s);
-            const Eigen::Vector3d ray = camera_.depth.ray(column, row);
-            sum += z * ray;
-            const double sigma_z = z * scale_.sigma_at(s) / s;
-            noise += sigma_z * sigma_z * ray * ray.transpose();
-        }
-        const auto n = static_cast<double>(pixels.size());
+    struct Followed {
+        std::uint32_t object;
+        Identities identities;
+    };
+
+    [[nodiscard]] TrackSample sample_of(const Thing& thing, TimeNs t, std::uint32_t object) const {
         TrackSample sample;
-        sample.t = frame.t;
+        sample.t = t;
         sample.object = object;
+        sample.identity = thing.identity;
+        if (!thing.seen) return sample;
         sample.status = TrackStatus::tracked;
-        sample.p_cam = sum / n;
-        const double outline = 0.5 * sample.p_cam.z() / camera_.depth.fx;
-        sample.covariance.topLeftCorner<3, 3>() = noise / (n * n);
-        sample.covariance.diagonal().head<2>().array() += outline * outline / std::sqrt(n);
-        sample.quality = {static_cast<int>(pixels.size()), 1.0, 0.0};
+        sample.p_cam = thing.now.centroid();
+        auto covariance = sample.covariance.topLeftCorner<3, 3>();
+        covariance = thing.now.centroid_covariance(lens_);
+        covariance.diagonal().array() += thing.hidden_u * thing.hidden_u;
+        sample.quality = {thing.now.points, 1.0, 0.0};
         return sample;
     }
 
-    RgbdCamera camera_;
-    DisparityScale scale_;
-    TrackedObjects<ChangeTrackSettings> objects_;
+    Pinhole lens_;
+    std::vector<Followed> followed_;
 };
 
 }  // namespace
+
+Result<void> check(const ChangeTrackSettings& settings, const std::string& path) {
+    if (std::isfinite(settings.memory_s) && settings.memory_s >= 0.0 && settings.memory_s <= 60.0)
+        return {};
+    return fail(
+        ErrorCode::invalid_argument,
+        path + ".memory_s",
+        "is " + std::to_string(settings.memory_s),
+        "give seconds from 0 to 60, e.g. 2"
+    );
+}
 
 std::unique_ptr<Tracker> make_change_tracker(
     const RgbdCamera& camera, TrackedObjects<ChangeTrackSettings> objects

@@ -4,16 +4,15 @@
 
 namespace kinectlab {
 
-/// Method "change": whatever moved. One sample for each moving segment, biggest first, at the
-/// centroid of its visible surface; none where nothing moved. The covariance is that of the
-/// centroid under the sensor's noise and an outline that is known to half a pixel.
+/// Method "change": whatever moved, as separate things that keep their identity (Identities). One
+/// sample for each thing known, at the centroid of its visible surface: tracked, or lost while
+/// nothing of it is seen. The covariance is that of the centroid under the sensor's noise, an
+/// outline that is known to half a pixel, and what another thing hides.
 [[nodiscard]] std::unique_ptr<Tracker> make_change_tracker(
     const RgbdCamera& camera, TrackedObjects<ChangeTrackSettings> objects
 );
 
-/// There is nothing to set, and so nothing to refuse.
-[[nodiscard]] inline Result<void> check(const ChangeTrackSettings&, const std::string&) {
-    return {};
-}
+/// Refuses a memory that is not from 0 to 60 s.
+[[nodiscard]] Result<void> check(const ChangeTrackSettings& settings, const std::string& path);
 
 }  // namespace kinectlab

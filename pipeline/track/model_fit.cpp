@@ -229,7 +229,7 @@ std::optional<ModelFit> ModelFitter::fit(
         return whole == 0 ? 0.0 : static_cast<double>(part) / static_cast<double>(whole);
     };
     fit.quality.inlier_share = share(sums.agree, sums.agree + sums.farther);
-    fit.seen_share = share(sums.agree, view.surface.size());
+    fit.seen_share = view.inside * share(sums.agree, view.surface.size());
     fit.seen_through_share = share(sums.farther, sums.offered);
     fit.outline_share = share(sums.outline_found, sums.outline_offered);
     return fit;

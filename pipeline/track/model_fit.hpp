@@ -25,7 +25,7 @@ struct ModelFit {
     Eigen::Isometry3d T_cam_obj;  ///< of the model's centre
     Matrix6d covariance;   ///< position of the centre (m²), rotation vector (rad²), camera frame
     TrackQuality quality;  ///< inlier_share is of the readings that could show the object
-    double seen_share = 0.0;          ///< of its visible surface: readings that lie on it
+    double seen_share = 0.0;          ///< of its surface on this side: readings that lie on it
     double seen_through_share = 0.0;  ///< readings from behind it: it cannot be there
     double outline_share = 0.0;       ///< of its outline: found where it should be; 0 without one
 };

@@ -40,6 +40,11 @@ bool ModelViewer::frame_the_object(const ObjectModel& model, const Eigen::Isomet
     const int width = static_cast<int>(std::min(right, high_u + 3.0F)) - left + 1;
     const int height = static_cast<int>(std::min(bottom, high_v + 3.0F)) - top + 1;
     const double area = static_cast<double>(width) * height;
+    view_.inside = std::min(
+        1.0,
+        area / (static_cast<double>(high_u - low_u + 1.0F) *
+                static_cast<double>(high_v - low_v + 1.0F))
+    );
     const int step = std::max(
         1, static_cast<int>(std::ceil(std::sqrt(area / static_cast<double>(settings_.most_pixels))))
     );
@@ -172,10 +177,11 @@ const ModelView& ModelViewer::look(const ObjectModel& model, const Eigen::Isomet
     view_.surface.clear();
     view_.outline.clear();
     view_.pixels = 0;
+    view_.inside = 0.0;
     if (!frame_the_object(model, T_cam_obj.cast<float>())) return view_;
     draw(model);
     take_surface(model, T_cam_obj);
-    if (model.has_outline) take_outline(T_cam_obj);
+    if (model.has_outline && settings_.most_outline > 0) take_outline(T_cam_obj);
     return view_;
 }
 

@@ -27,6 +27,7 @@ struct ModelView {
     std::vector<ViewPoint> surface;     ///< spread evenly over the picture
     std::vector<OutlinePoint> outline;  ///< none inside the picture's border, none of a cloud
     std::size_t pixels = 0;             ///< that the object covers
+    double inside = 0.0;                ///< share of the box about it that lies inside the picture
 };
 
 /// Draws a model with a depth buffer and takes points of what is seen. Parts nearer than 0.1 m and

@@ -49,7 +49,9 @@ struct ConeSettings {
 };
 
 /// Method "change": whatever moved.
-struct ChangeTrackSettings {};
+struct ChangeTrackSettings {
+    double memory_s = 2.0;  ///< so long a thing that is not seen keeps its name; 0 to 60
+};
 
 /// Method "surface_patch": a rigid thing of any shape, known by a model of its surface.
 struct SurfacePatchSettings {
@@ -85,18 +87,50 @@ struct ColourSettings {
     double learn_at_s = 0.0;        ///< in the first frame this long after the first one
 };
 
+/// How spots of a texture are described.
+enum class TextureSpots {
+    sift,    ///< bears change of size and view; some 10 ms for an object
+    binary,  ///< some 2 ms
+};
+
+/// Method "texture": whatever has a print, a pattern or spots on it.
+struct TextureSettings {
+    std::optional<PictureBox> box;  ///< the object's first look; else what moved
+    double learn_at_s = 0.0;        ///< not before this long after the first frame
+    TextureSpots spots = TextureSpots::sift;
+    int fewest_spots = 8;  ///< that must agree on a pose
+};
+
+/// Method "sift3d": whatever has a texture on a shape, by spots of the surface in space.
+struct Sift3dTrackSettings {
+    std::optional<PictureBox> box;
+    double learn_at_s = 0.0;
+    double scale_m = 0.004;  ///< of the smallest spots; also the voxel's side
+    int fewest_spots = 6;    ///< that must agree on a pose
+};
+
 /// One alternative for each method, in the order of kTrackingMethods.
 using MethodSettings = std::variant<
     SphereSettings,
     ChangeTrackSettings,
     SurfacePatchSettings,
     ColourSettings,
+    TextureSettings,
+    Sift3dTrackSettings,
     PlaneSettings,
     CylinderSettings,
     ConeSettings>;
 
 inline constexpr std::array<std::string_view, std::variant_size_v<MethodSettings>> kTrackingMethods{
-    "sphere", "change", "surface_patch", "colour", "plane", "cylinder", "cone"};
+    "sphere",
+    "change",
+    "surface_patch",
+    "colour",
+    "texture",
+    "sift3d",
+    "plane",
+    "cylinder",
+    "cone"};
 
 /// One object to track, as given in {"objects":[…]} or by an experiment. Plain values here: JSON is
 /// read by whoever has a file (server/experiments), the pipeline knows none.
@@ -116,7 +150,9 @@ struct ObjectSpec {
 
 /// Whether a method cannot do without the colour picture.
 [[nodiscard]] inline bool needs_colour(const ObjectSpec& spec) {
-    return std::holds_alternative<ColourSettings>(spec.settings);
+    return std::holds_alternative<ColourSettings>(spec.settings) ||
+           std::holds_alternative<TextureSettings>(spec.settings) ||
+           std::holds_alternative<Sift3dTrackSettings>(spec.settings);
 }
 
 }  // namespace kinectlab

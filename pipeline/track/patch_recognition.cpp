@@ -6,18 +6,18 @@
 namespace kinectlab {
 namespace {
 
-constexpr std::size_t kMatchesAPatch = 80;
+constexpr std::size_t kMatchesAPatch = 200;
 constexpr double kMostPatchDistance = 0.5;  // χ²
 constexpr std::size_t kFirstLook = 16;      // points after which most poses are given up
-constexpr float kFirstScore = 0.35F;
-constexpr float kLeastScore = 0.4F;
+constexpr float kFirstScore = 0.15F;
+constexpr float kLeastScore = 0.25F;
 constexpr std::size_t kSketches = 48;  // poses that are laid upon the picture
 constexpr std::size_t kFinals = 4;
 constexpr int kSketchRounds = 3;
 
 PatchSettings settings_for(double radius_m) {
     PatchSettings settings;
-    settings.fit_radius_m = std::clamp(0.11 * radius_m, 0.012, 0.05);
+    settings.fit_radius_m = std::clamp(0.16 * radius_m, 0.012, 0.05);
     settings.patch_radius_m = 2.5 * settings.fit_radius_m;
     return settings;
 }
@@ -64,7 +64,7 @@ float PatchRecogniser::score(const Eigen::Isometry3f& T, const std::vector<ViewP
     const auto fx = static_cast<float>(camera_.depth.fx), fy = static_cast<float>(camera_.depth.fy);
     const auto cx = static_cast<float>(camera_.depth.cx) + 0.5F;
     const auto cy = static_cast<float>(camera_.depth.cy) + 0.5F;
-    const float gate = std::clamp(0.1F * static_cast<float>(model_->radius_m), 0.01F, 0.03F);
+    const float gate = std::clamp(0.15F * static_cast<float>(model_->radius_m), 0.01F, 0.03F);
     int sum = 0;
     std::size_t seen = 0;
     for (const auto& point : points) {

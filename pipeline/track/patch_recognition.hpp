@@ -14,8 +14,8 @@ namespace kinectlab {
 /// How sure a fit must be to be the object.
 struct Acceptance {
     double least_seen = 0.5;      ///< of the visible surface: half of it may be hidden
-    double least_inliers = 0.8;   ///< of the readings on it or behind it
-    double least_outline = 0.35;  ///< of the outline, where the model has one
+    double least_inliers = 0.88;  ///< of the readings on it or behind it
+    double least_outline = 0.6;   ///< of the outline, where the model has one
     double most_rms_sigmas = 3.0;
 };
 

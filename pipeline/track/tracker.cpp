@@ -5,8 +5,10 @@
 #include "pipeline/track/change.hpp"
 #include "pipeline/track/colour.hpp"
 #include "pipeline/track/shape_tracker.hpp"
+#include "pipeline/track/sift3d.hpp"
 #include "pipeline/track/sphere.hpp"
 #include "pipeline/track/surface_patch.hpp"
+#include "pipeline/track/texture.hpp"
 
 namespace kinectlab {
 namespace {
@@ -92,6 +94,8 @@ Result<std::vector<std::unique_ptr<Tracker>>> make_trackers(
     add(own<ChangeTrackSettings>(objects), make_change_tracker);
     add(own<SurfacePatchSettings>(objects), make_surface_patch_tracker);
     add(own<ColourSettings>(objects), make_colour_tracker);
+    add(own<TextureSettings>(objects), make_texture_tracker);
+    add(own<Sift3dTrackSettings>(objects), make_sift3d_tracker);
     if (!all_made) return tl::unexpected(all_made.error());
     return trackers;
 }

@@ -117,7 +117,7 @@ int analyse(int argc, char** argv) {
     if (!values) return report(values.error());
 
     const auto recording =
-        track_recording(arguments.recording, experiments::objects_for(*definition, *values));
+        track_recording(arguments.recording, experiments::plan_for(*definition, *values));
     if (!recording) return report(recording.error());
     const auto trajectories = trajectories_of(*recording);
     const auto measured = analyse_pendulum(

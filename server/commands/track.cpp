@@ -13,6 +13,7 @@
 #include "server/experiments/model_files.hpp"
 #include "server/experiments/objects_json.hpp"
 #include "server/experiments/poses_csv.hpp"
+#include "server/experiments/preprocess_json.hpp"
 #include "server/experiments/result_json.hpp"
 
 namespace kinectlab::commands {
@@ -89,7 +90,8 @@ json summary_of(
         {"provenance",
          {{"program", "kinectlab"},
           {"version", config::version()},
-          {"camera", experiments::to_json(recording.source.camera)}}}};
+          {"camera", experiments::to_json(recording.source.camera)},
+          {"preprocess", experiments::to_json(recording.preprocess)}}}};
     if (std::any_of(recording.objects.begin(), recording.objects.end(), finds_many))
         summary["moved_per_frame"] = count_moved(recording);
     return summary;
@@ -100,11 +102,11 @@ json summary_of(
 int track(int argc, char** argv) {
     Arguments arguments;
     if (const auto status = parse(argc, argv, arguments)) return *status;
-    auto objects = experiments::load_objects(arguments.objects);
-    if (!objects) return report_usage(objects.error());
-    for (const auto& warning : experiments::warnings_of(*objects))
+    auto plan = experiments::load_tracking_plan(arguments.objects);
+    if (!plan) return report_usage(plan.error());
+    for (const auto& warning : experiments::warnings_of(plan->objects))
         std::fprintf(stderr, "warning: %s\n", warning.c_str());
-    const auto recording = track_recording(arguments.recording, std::move(*objects));
+    const auto recording = track_recording(arguments.recording, std::move(*plan));
     if (!recording) return report(recording.error());
 
     const auto trajectories = trajectories_of(*recording);

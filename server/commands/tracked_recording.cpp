@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+#include <map>
 
 #include "pipeline/motion/motion.hpp"
 #include "pipeline/run/chain.hpp"
@@ -20,7 +20,12 @@ tl::unexpected<Error> forward(const Result<T>& failed) {
     return tl::unexpected<Error>(failed.error());
 }
 
-Result<void> learn(FrameSource& source, Chain& chain) {
+TimeNs reference_time(const PreprocessSettings& settings) {
+    if (settings.reference.method == ReferenceMethod::scene) return kReferenceTime;
+    return from_seconds(settings.reference.seconds);
+}
+
+Result<void> learn(FrameSource& source, Chain& chain, TimeNs time) {
     const std::size_t count = source.info().frame_count.value_or(0);
     const std::size_t most = std::max<std::size_t>(1, count / 4);
     RgbdFrame frame;
@@ -30,7 +35,7 @@ Result<void> learn(FrameSource& source, Chain& chain) {
         if (!status) return forward(status);
         if (*status != FrameStatus::frame) break;
         if (i == 0) first = frame.t;
-        if (frame.t - first >= kReferenceTime) break;
+        if (frame.t - first >= time) break;
         if (auto learned = chain.learn(frame); !learned) return learned;
     }
     if (chain.learned_frames() > 0) return {};
@@ -67,58 +72,46 @@ Result<void> track_all(FrameSource& source, Chain& chain, TrackedRecording& reco
     }
 }
 
-MotionSample in_lab(const TrackSample& sample, const Eigen::Isometry3d& T_lab_cam) {
-    static const Eigen::Vector3d kUnknown =
-        Eigen::Vector3d::Constant(std::numeric_limits<double>::quiet_NaN());
-    MotionSample moved;
-    moved.t = sample.t;
-    moved.status = sample.status;
-    moved.p_lab = T_lab_cam * sample.p_cam;
-    const Eigen::Matrix3d R = T_lab_cam.linear();
-    moved.covariance.topLeftCorner<3, 3>() =
-        R * sample.covariance.topLeftCorner<3, 3>() * R.transpose();
-    moved.v_lab = moved.a_lab = moved.w_lab = kUnknown;
-    moved.quality = sample.quality;
-    return moved;
-}
+/// What one thing among many did, from when it was first to when it was last seen.
+struct ThingSamples {
+    std::uint32_t identity = 0;
+    std::vector<TrackSample> samples;
+};
 
-std::vector<Trajectory> ranked(
-    const std::string& name,
-    const std::vector<TrackSample>& samples,
-    const Eigen::Isometry3d& T_lab_cam
-) {
-    std::vector<Trajectory> trajectories;
-    std::size_t rank = 0;
-    for (std::size_t i = 0; i < samples.size(); ++i) {
-        if (samples[i].status != TrackStatus::tracked) continue;
-        rank = i > 0 && samples[i - 1].t == samples[i].t ? rank + 1 : 0;
-        if (rank == trajectories.size())
-            trajectories.push_back({name + "-" + std::to_string(rank + 1), {}});
-        trajectories[rank].samples.push_back(in_lab(samples[i], T_lab_cam));
+std::vector<ThingSamples> by_identity(const std::vector<TrackSample>& samples) {
+    std::map<std::uint32_t, std::vector<TrackSample>> of;
+    for (const auto& sample : samples)
+        of[sample.identity].push_back(sample);
+    std::vector<ThingSamples> things;
+    for (auto& [identity, own] : of) {
+        while (!own.empty() && own.back().status != TrackStatus::tracked)
+            own.pop_back();
+        if (!own.empty()) things.push_back({identity, std::move(own)});
     }
-    return trajectories;
+    return things;
 }
 
 }  // namespace
 
-Result<TrackedRecording> track_recording(
-    const std::filesystem::path& path, std::vector<ObjectSpec> objects
-) {
-    const bool with_colour = std::any_of(objects.begin(), objects.end(), needs_colour);
+Result<TrackedRecording> track_recording(const std::filesystem::path& path, TrackingPlan plan) {
+    const bool with_colour = std::any_of(plan.objects.begin(), plan.objects.end(), needs_colour);
     const RecordingOptions options{.with_colour = with_colour};
     auto source = open_recording(path, options);
     if (!source) return forward(source);
     TrackedRecording recording;
     recording.source = (*source)->info();
-    recording.objects = std::move(objects);
+    recording.objects = std::move(plan.objects);
+    recording.preprocess = plan.preprocess;
     recording.samples.resize(recording.objects.size());
 
     ChainSettings settings;
     settings.camera = recording.source.camera;
     settings.objects = recording.objects;
+    settings.preprocess = recording.preprocess;
     auto chain = Chain::create(settings);
     if (!chain) return forward(chain);
-    if (auto learned = learn(**source, *chain); !learned) return forward(learned);
+    if (auto learned = learn(**source, *chain, reference_time(recording.preprocess)); !learned)
+        return forward(learned);
     recording.learned_frames = chain->learned_frames();
 
     source->reset();  // an .oni file has one player, which must start anew
@@ -144,8 +137,13 @@ std::vector<Trajectory> trajectories_of(const TrackedRecording& recording) {
         const auto& object = recording.objects[i];
         const auto& samples = recording.samples[i];
         if (finds_many(object)) {
-            for (auto& trajectory : ranked(object.name, samples, T_lab_cam))
-                trajectories.push_back(std::move(trajectory));
+            for (const auto& thing : by_identity(samples))
+                trajectories.push_back(to_trajectory(
+                    object.name + "-" + std::to_string(thing.identity),
+                    thing.samples,
+                    T_lab_cam,
+                    motion
+                ));
         } else {
             trajectories.push_back(to_trajectory(object.name, samples, T_lab_cam, motion));
         }

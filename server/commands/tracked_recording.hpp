@@ -7,8 +7,8 @@
 #include "pipeline/core/error.hpp"
 #include "pipeline/core/track_sample.hpp"
 #include "pipeline/core/trajectory.hpp"
+#include "pipeline/run/tracking_plan.hpp"
 #include "pipeline/sensor/frame_source.hpp"
-#include "pipeline/track/object_spec.hpp"
 
 namespace kinectlab::commands {
 
@@ -16,6 +16,7 @@ namespace kinectlab::commands {
 struct TrackedRecording {
     SourceInfo source;
     std::vector<ObjectSpec> objects;
+    PreprocessSettings preprocess;
     std::vector<TimeNs> frames;  ///< time of each
     /// For each object its samples in time order: one a frame, with method "change" as many as
     /// moved.
@@ -24,19 +25,20 @@ struct TrackedRecording {
     std::size_t frames_lost = 0;     ///< gaps in the times, in frames
 };
 
-/// Learns the reference scene from the first second of the recording (of a short one from its first
-/// quarter, at least one frame), then tracks from the first frame to the last.
+/// Learns the reference scene from the first second of the recording, or from as many seconds as
+/// its method asks for (of a short one from its first quarter, at least one frame), then tracks
+/// from the first frame to the last.
 [[nodiscard]] Result<TrackedRecording> track_recording(
-    const std::filesystem::path& path, std::vector<ObjectSpec> objects
+    const std::filesystem::path& path, TrackingPlan plan
 );
 
 /// Where the camera stands; a recording that does not say is taken to come from a level camera at
 /// the lab's origin that looks along y.
 [[nodiscard]] Eigen::Isometry3d lab_pose_of(const SourceInfo& source);
 
-/// One trajectory for each object, gaps filled and marked. With method "change" one for each rank
-/// of size, named NAME-1, NAME-2, …: what moved has no identity from frame to frame, so nothing is
-/// filled in and no velocity derived.
+/// One trajectory for each object, gaps filled and marked. With method "change" one for each thing
+/// that moved, NAME-1, NAME-2, … in the order in which they came, from where it was first seen to
+/// where it was last.
 [[nodiscard]] std::vector<Trajectory> trajectories_of(const TrackedRecording& recording);
 
 }  // namespace kinectlab::commands

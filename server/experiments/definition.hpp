@@ -2,13 +2,14 @@
 
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include <nlohmann/json_fwd.hpp>
 
 #include "pipeline/core/error.hpp"
-#include "pipeline/track/object_spec.hpp"
+#include "pipeline/run/tracking_plan.hpp"
 
 namespace kinectlab::experiments {
 
@@ -37,6 +38,7 @@ struct Definition {
     std::string summary;
     std::vector<Parameter> parameters;
     std::vector<ExperimentObject> objects;
+    std::optional<PreprocessSettings> preprocess;  ///< by default as PreprocessSettings
 };
 
 using Values = std::map<std::string, double>;
@@ -52,9 +54,7 @@ enum class RigKind { simulated, real };
 );
 
 /// What to track in a run with these (validated) values.
-[[nodiscard]] std::vector<ObjectSpec> objects_for(
-    const Definition& definition, const Values& values
-);
+[[nodiscard]] TrackingPlan plan_for(const Definition& definition, const Values& values);
 
 /// Unknown keys, missing keys, ranges without their default inside: errors with the JSON path.
 [[nodiscard]] Result<Definition> read_definition(const nlohmann::json& document);

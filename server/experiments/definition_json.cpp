@@ -6,6 +6,7 @@
 #include "server/experiments/definition.hpp"
 #include "server/experiments/model_files.hpp"
 #include "server/experiments/objects_json.hpp"
+#include "server/experiments/preprocess_json.hpp"
 #include "server/experiments/strict_json.hpp"
 
 namespace kinectlab::experiments {
@@ -85,7 +86,9 @@ Result<Definition> load_file(const std::filesystem::path& file) {
 }  // namespace
 
 Result<Definition> read_definition(const json& document) {
-    ObjectReader reader(document, "", {"id", "title", "summary", "parameters", "objects"});
+    ObjectReader reader(
+        document, "", {"id", "title", "summary", "parameters", "objects", "preprocess"}
+    );
     Definition definition;
     definition.id = reader.text("id");
     definition.title = reader.text("title");
@@ -105,6 +108,11 @@ Result<Definition> read_definition(const json& document) {
         );
         if (!object) return tl::unexpected<Error>(object.error());
         definition.objects.push_back(std::move(*object));
+    }
+    if (reader.has("preprocess")) {
+        auto preprocess = read_preprocess(document["preprocess"], "preprocess");
+        if (!preprocess) return tl::unexpected<Error>(preprocess.error());
+        definition.preprocess = *preprocess;
     }
     return definition;
 }
@@ -126,23 +134,26 @@ json to_json(const Definition& definition) {
     json objects = json::array();
     for (const auto& object : definition.objects)
         objects.push_back(json::parse(object.json));
-    return {
+    json document = {
         {"id", definition.id},
         {"title", definition.title},
         {"summary", definition.summary},
         {"parameters", std::move(parameters)},
         {"objects", std::move(objects)}};
+    if (definition.preprocess) document["preprocess"] = to_json(*definition.preprocess);
+    return document;
 }
 
-std::vector<ObjectSpec> objects_for(const Definition& definition, const Values& values) {
-    std::vector<ObjectSpec> specs;
+TrackingPlan plan_for(const Definition& definition, const Values& values) {
+    TrackingPlan plan;
+    plan.preprocess = definition.preprocess.value_or(PreprocessSettings{});
     for (std::size_t i = 0; i < definition.objects.size(); ++i) {
         auto spec = resolve(
             json::parse(definition.objects[i].json), "objects[" + std::to_string(i) + "]", values
         );
-        specs.push_back(std::move(spec.value()));
+        plan.objects.push_back(std::move(spec.value()));
     }
-    return specs;
+    return plan;
 }
 
 Result<std::vector<Definition>> load_definitions(const std::filesystem::path& folder) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <numbers>
 
 #include <nlohmann/json.hpp>
@@ -100,8 +101,12 @@ MethodSettings read_cone(ObjectReader& reader) {
     return settings;
 }
 
-MethodSettings read_change(ObjectReader&) {
-    return ChangeTrackSettings{};
+MethodSettings read_change(ObjectReader& reader) {
+    ChangeTrackSettings settings;
+    settings.memory_s = reader.number_or("memory_s", settings.memory_s);
+    if (settings.memory_s < 0.0 || settings.memory_s > 60.0)
+        reader.refuse("memory_s", "is not between 0 and 60", "give seconds, e.g. 2");
+    return settings;
 }
 
 /// A list of `count` numbers; zeros after an error.
@@ -158,6 +163,41 @@ MethodSettings read_colour(ObjectReader& reader) {
     return settings;
 }
 
+int read_fewest_spots(ObjectReader& reader, int otherwise) {
+    const double fewest = reader.number_or("fewest_spots", otherwise);
+    if (fewest != std::floor(fewest))
+        reader.refuse("fewest_spots", "is no whole number", "give a whole number from 4 to 1000");
+    return to_pixel(fewest);
+}
+
+/// Where and when an object is looked at first.
+template <class Settings>
+void read_first_look(ObjectReader& reader, Settings& settings) {
+    if (reader.has("box")) settings.box = read_box(reader);
+    settings.learn_at_s = reader.number_or("learn_at_s", settings.learn_at_s);
+    settings.fewest_spots = read_fewest_spots(reader, settings.fewest_spots);
+}
+
+MethodSettings read_texture(ObjectReader& reader) {
+    TextureSettings settings;
+    read_first_look(reader, settings);
+    if (reader.has("spots")) {
+        const std::string spots = reader.text("spots");
+        if (spots == "binary")
+            settings.spots = TextureSpots::binary;
+        else if (spots != "sift")
+            reader.refuse("spots", "is \"" + spots.substr(0, 60) + "\"", "give sift or binary");
+    }
+    return settings;
+}
+
+MethodSettings read_sift3d(ObjectReader& reader) {
+    Sift3dTrackSettings settings;
+    read_first_look(reader, settings);
+    settings.scale_m = reader.number_or("scale_m", settings.scale_m);
+    return settings;
+}
+
 struct MethodReader {
     std::vector<std::string> keys;
     MethodSettings (*read)(ObjectReader&);
@@ -167,9 +207,11 @@ struct MethodReader {
 const std::array<MethodReader, kTrackingMethods.size()>& readers() {
     static const std::array<MethodReader, kTrackingMethods.size()> all{{
         {{"radius_m", "min_radius_m", "max_radius_m", "in", "search"}, read_sphere},
-        {{}, read_change},
+        {{"memory_s"}, read_change},
         {{"model", "model_unit_m", "seed"}, read_surface_patch},
         {{"hue_deg", "saturation", "value", "box", "click", "learn_at_s"}, read_colour},
+        {{"box", "learn_at_s", "spots", "fewest_spots"}, read_texture},
+        {{"box", "learn_at_s", "scale_m", "fewest_spots"}, read_sift3d},
         {{"in", "search"}, read_plane},
         {{"radius_m", "min_radius_m", "max_radius_m", "in"}, read_cylinder},
         {{"half_angle_deg", "in"}, read_cone},

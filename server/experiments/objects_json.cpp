@@ -4,6 +4,7 @@
 
 #include "server/experiments/method_settings_json.hpp"
 #include "server/experiments/model_files.hpp"
+#include "server/experiments/preprocess_json.hpp"
 #include "server/experiments/strict_json.hpp"
 
 namespace kinectlab::experiments {
@@ -55,8 +56,8 @@ Result<ObjectSpec> read_object(const nlohmann::json& element, const std::string&
     return spec;
 }
 
-Result<std::vector<ObjectSpec>> read_objects(const nlohmann::json& document) {
-    ObjectReader reader(document, "", {"objects"});
+Result<TrackingPlan> read_tracking_plan(const nlohmann::json& document) {
+    ObjectReader reader(document, "", {"objects", "preprocess"});
     const auto& list = reader.array("objects");
     if (reader.ok() && (list.empty() || list.size() > kMaxObjects)) {
         reader.refuse(
@@ -65,7 +66,13 @@ Result<std::vector<ObjectSpec>> read_objects(const nlohmann::json& document) {
     }
     if (!reader.ok()) return reader.error();
 
-    std::vector<ObjectSpec> objects;
+    TrackingPlan plan;
+    if (reader.has("preprocess")) {
+        auto preprocess = read_preprocess(document["preprocess"], "preprocess");
+        if (!preprocess) return tl::unexpected<Error>(preprocess.error());
+        plan.preprocess = *preprocess;
+    }
+    auto& objects = plan.objects;
     for (std::size_t i = 0; i < list.size(); ++i) {
         const std::string path = "objects[" + std::to_string(i) + "]";
         auto object = read_object(list[i], path);
@@ -81,17 +88,20 @@ Result<std::vector<ObjectSpec>> read_objects(const nlohmann::json& document) {
         }
         objects.push_back(std::move(*object));
     }
-    return objects;
+    return plan;
 }
 
-Result<std::vector<ObjectSpec>> load_objects(const std::filesystem::path& file) {
+Result<TrackingPlan> load_tracking_plan(const std::filesystem::path& file) {
     const auto beside = [&](nlohmann::json document) {
         return with_models_beside(file, std::move(document));
     };
-    return read_json_file(file).map(beside).and_then(read_objects).map_error([&](Error error) {
-        if (error.field != file.string()) error.field = file.string() + ": " + error.field;
-        return error;
-    });
+    return read_json_file(file)
+        .map(beside)
+        .and_then(read_tracking_plan)
+        .map_error([&](Error error) {
+            if (error.field != file.string()) error.field = file.string() + ": " + error.field;
+            return error;
+        });
 }
 
 }  // namespace kinectlab::experiments

@@ -1,12 +1,16 @@
 #pragma once
 
+#include <cstdint>
 #include <deque>
+#include <map>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "pipeline/core/trajectory.hpp"
 #include "pipeline/run/chain.hpp"
+#include "pipeline/run/tracking_plan.hpp"
 #include "pipeline/sensor/frame_source.hpp"
 
 namespace kinectlab::rig {
@@ -27,13 +31,14 @@ class Observer {
 public:
     /// Errors as Chain::create.
     [[nodiscard]] static Result<Observer> create(
-        const SourceInfo& source, std::vector<ObjectSpec> objects
+        const SourceInfo& source, const TrackingPlan& plan
     );
 
     [[nodiscard]] Result<void> learn(const RgbdFrame& frame) { return chain_.learn(frame); }
     [[nodiscard]] std::size_t learned_frames() const { return chain_.learned_frames(); }
 
-    /// One entry for each object. The span is valid until the next call.
+    /// One entry for each object; for one that is many things (method "change") one for each of
+    /// them, named NAME-1, NAME-2, …. The span is valid until the next call.
     [[nodiscard]] Result<std::span<const Observed>> track(const RgbdFrame& frame);
 
 private:
@@ -43,7 +48,8 @@ private:
     std::vector<ObjectSpec> objects_;
     Eigen::Isometry3d T_lab_cam_;
     double frame_period_s_;
-    std::vector<std::deque<TrackSample>> recent_;  ///< for each object
+    /// For each object and each of the things that go by its name.
+    std::map<std::pair<std::uint32_t, std::uint32_t>, std::deque<TrackSample>> recent_;
     std::vector<Observed> observed_;
 };
 

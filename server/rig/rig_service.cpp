@@ -28,16 +28,11 @@ TimeNs utc_now() {
 /// A rig with the thread that works for it.
 class Lane {
 public:
-    Lane(
-        const RigSettings& settings,
-        std::vector<ObjectSpec> idle_objects,
-        store::Store& store,
-        bus::Bus& bus
-    )
+    Lane(const RigSettings& settings, TrackingPlan idle_plan, store::Store& store, bus::Bus& bus)
         : settings_(settings),
           worker_(
               settings,
-              std::move(idle_objects),
+              std::move(idle_plan),
               {[uri = settings.uri] { return open_device(uri); }, utc_now, {}},
               store,
               bus
@@ -135,16 +130,16 @@ RigService::RigService(
     : state_(new State{std::move(definitions), store, {}}) {
     store.runs.interrupt_unfinished(utc_now(), "the server went away during the run");
     for (const RigSettings& settings : rigs) {
-        std::vector<ObjectSpec> idle_objects;
+        TrackingPlan idle_plan;
         for (const auto& id : settings.experiments) {
             const auto* definition = state_->definition(id);
             if (definition == nullptr) continue;
             if (const auto values = experiments::validate(*definition, {})) {
-                idle_objects = experiments::objects_for(*definition, *values);
+                idle_plan = experiments::plan_for(*definition, *values);
                 break;
             }
         }
-        state_->lanes.push_back(std::make_unique<Lane>(settings, idle_objects, store, bus));
+        state_->lanes.push_back(std::make_unique<Lane>(settings, idle_plan, store, bus));
     }
 }
 
@@ -221,7 +216,7 @@ Result<lab::Run> RigService::start_run(
             .duration_s = duration_s,
             .created = now,
         },
-        experiments::objects_for(*definition, *values),
+        experiments::plan_for(*definition, *values),
         std::min(now + kReadyAtMost, booking->slot.end - from_seconds(duration_s))
     );
 }

@@ -48,13 +48,13 @@ bool same_figures(const lab::RigStatus& a, const lab::RigStatus& b) {
 
 RigWorker::RigWorker(
     RigSettings settings,
-    std::vector<ObjectSpec> idle_objects,
+    TrackingPlan idle_plan,
     WorkerParts parts,
     store::Store& store,
     bus::Bus& bus
 )
     : settings_(std::move(settings)),
-      idle_objects_(std::move(idle_objects)),
+      idle_plan_(std::move(idle_plan)),
       parts_(std::move(parts)),
       store_(store),
       bus_(bus),
@@ -101,7 +101,7 @@ std::chrono::milliseconds RigWorker::step() {
 void RigWorker::open(TimeNs now) {
     auto device = parts_.open();
     if (!device) return go_offline(now, to_text(device.error()));
-    auto observer = Observer::create(device->source->info(), idle_objects_);
+    auto observer = Observer::create(device->source->info(), idle_plan_);
     if (!observer) return go_offline(now, to_text(observer.error()));
     // A run that is still open here lost its worker in a breakdown.
     store_.runs.interrupt_unfinished(now, "the rig broke down during the run", settings_.id);
@@ -121,7 +121,7 @@ void RigWorker::take_order(TimeNs now) {
     }
     if (!order) return;
     trouble_.clear();
-    auto observer = Observer::create(device_->source->info(), order->objects);
+    auto observer = Observer::create(device_->source->info(), order->plan);
     if (observer) {
         observer_ = std::move(*observer);
         execution_ = std::make_unique<RunExecution>(
@@ -229,9 +229,7 @@ void RigWorker::close(lab::RunEvent event, const std::string& reason) {
     if (broken) std::rethrow_exception(broken);
 }
 
-Result<lab::Run> RigWorker::start(
-    const lab::Run& run, std::vector<ObjectSpec> objects, TimeNs ready_until
-) {
+Result<lab::Run> RigWorker::start(const lab::Run& run, TrackingPlan plan, TimeNs ready_until) {
     const std::lock_guard lock(mutex_);
     if (status_.state == lab::RigState::offline) {
         return fail(ErrorCode::unavailable, "rig", status_.sentence, "choose another rig");
@@ -244,7 +242,7 @@ Result<lab::Run> RigWorker::start(
     auto stored = store_.runs.add(run);
     if (!stored) return stored;
     active_.begin(*stored);
-    order_ = RunOrder{*stored, std::move(objects), ready_until};
+    order_ = RunOrder{*stored, std::move(plan), ready_until};
     return stored;
 }
 

@@ -31,10 +31,10 @@ struct WorkerParts {
 /// close(); status(), picture() and the run's commands may come from any thread.
 class RigWorker {
 public:
-    /// `idle_objects`: what to look for while no run is under way.
+    /// `idle_plan`: what to look for while no run is under way.
     RigWorker(
         RigSettings settings,
-        std::vector<ObjectSpec> idle_objects,
+        TrackingPlan idle_plan,
         WorkerParts parts,
         store::Store& store,
         bus::Bus& bus
@@ -50,7 +50,7 @@ public:
     /// Stores the run and carries it out. `ready_until`: when it is given up if nobody released it.
     /// Errors: unavailable while offline, conflict while busy.
     [[nodiscard]] Result<lab::Run> start(
-        const lab::Run& run, std::vector<ObjectSpec> objects, TimeNs ready_until
+        const lab::Run& run, TrackingPlan plan, TimeNs ready_until
     );
     [[nodiscard]] Result<lab::Run> advance(lab::RunId run, const store::RunStep& step);
     [[nodiscard]] lab::RigStatus status() const;
@@ -60,7 +60,7 @@ private:
     /// A stored run that the worker's thread has not seen yet.
     struct RunOrder {
         lab::Run run;
-        std::vector<ObjectSpec> objects;
+        TrackingPlan plan;
         TimeNs ready_until = 0;
     };
 
@@ -77,7 +77,7 @@ private:
     [[nodiscard]] RunSurroundings surroundings();
 
     const RigSettings settings_;
-    const std::vector<ObjectSpec> idle_objects_;
+    const TrackingPlan idle_plan_;
     const WorkerParts parts_;
     store::Store& store_;
     bus::Bus& bus_;

@@ -7,7 +7,7 @@
 #include "pipeline/analysis/pendulum.hpp"
 #include "pipeline/core/version.hpp"
 #include "pipeline/motion/motion.hpp"
-#include "pipeline/run/chain.hpp"
+#include "server/experiments/preprocess_json.hpp"
 #include "server/experiments/result_json.hpp"
 #include "server/lab/utc.hpp"
 #include "server/rig/observer.hpp"
@@ -47,16 +47,23 @@ experiments::Provenance provenance(
     };
 }
 
+/// How its frames were prepared, by the experiment as it was defined then.
+json preprocess_of(const lab::Run& run) {
+    const json definition = json::parse(run.definition_json, nullptr, false);
+    const bool told = definition.is_object() && definition.contains("preprocess");
+    const auto settings = told
+                              ? experiments::read_preprocess(definition["preprocess"], "preprocess")
+                              : Result<PreprocessSettings>();
+    return experiments::to_json(settings.value_or(PreprocessSettings{}));
+}
+
 /// What only a run on a rig has.
 void add_run(json& provenance, const lab::Run& run) {
-    const ChainSettings chain;
     provenance["rig"] = run.rig;
     provenance["run"] = run.id;
     provenance["started"] = lab::to_rfc3339(run.started.value_or(run.created));
     provenance["frames_lost"] = run.frames_lost;
-    provenance["configuration"] = {
-        {"change_threshold_steps", chain.change_threshold_steps},
-        {"min_segment_points", chain.min_segment_points}};
+    provenance["configuration"] = preprocess_of(run);
 }
 
 /// {"x": […], "y": […], "z": […]}; NaN becomes null.

@@ -10,10 +10,18 @@ Figures measure_frame_to_pose();
 Figures measure_sphere_accuracy();
 Figures measure_shape_regions();
 Figures measure_shape_scene();
+Figures measure_outliers();
+Figures measure_moving_least_squares();
+Figures measure_normals();
+Figures measure_octree_change();
+Figures measure_organised_change();
+Figures measure_depth_cut();
 Figures measure_gravity_from_positions();
 Figures measure_gravity_khoshelham();
 Figures measure_gravity_kinect();
 Figures measure_live_latency();
+Figures measure_texture_pose();
+Figures measure_sift3d_keypoints();
 
 /// Everything that can be measured. To add something: declare it above and name it here with the
 /// figures it yields, so that --filter can pass over what is not wanted.
@@ -27,10 +35,18 @@ inline constexpr std::array kMeasurements{
     Measurement{"sphere centre accuracy", measure_sphere_accuracy},
     Measurement{"sphere, cylinder, cone, region of interest", measure_shape_regions},
     Measurement{"whole scene, four kinds of shape", measure_shape_scene},
+    Measurement{"outliers", measure_outliers},
+    Measurement{"moving least squares", measure_moving_least_squares},
+    Measurement{"normals", measure_normals},
+    Measurement{"octree change", measure_octree_change},
+    Measurement{"change in the image grid", measure_organised_change},
+    Measurement{"depth cut", measure_depth_cut},
     Measurement{"g, white positions, analysis of 900 positions", measure_gravity_from_positions},
     Measurement{"g, khoshelham noise", measure_gravity_khoshelham},
     Measurement{"g, kinect noise", measure_gravity_kinect},
     Measurement{"live: capture to pose at a WebSocket client, frames lost", measure_live_latency},
+    Measurement{"2-D texture pose, SIFT", measure_texture_pose},
+    Measurement{"3-D SIFT keypoints", measure_sift3d_keypoints},
 };
 
 }  // namespace kinectlab::bench

@@ -57,7 +57,7 @@ TEST(Definition, ARealRigHasNoGravityToSet) {
 }
 
 TEST(Definition, TheBobHasTheRunsRadius) {
-    const auto objects = objects_for(pendulum(), {{"bob_radius_m", 0.03}});
+    const auto objects = plan_for(pendulum(), {{"bob_radius_m", 0.03}}).objects;
     ASSERT_EQ(objects.size(), 1u);
     EXPECT_EQ(objects[0].name, "bob");
     EXPECT_EQ(method_of(objects[0]), "sphere");

@@ -12,27 +12,28 @@ namespace {
 using testing::HasSubstr;
 
 Error error_of(const std::string& text) {
-    const auto objects = parse_json(text, "objects.json").and_then(read_objects);
-    EXPECT_FALSE(objects) << text;
-    return objects ? Error{} : objects.error();
+    const auto plan = parse_json(text, "objects.json").and_then(read_tracking_plan);
+    EXPECT_FALSE(plan) << text;
+    return plan ? Error{} : plan.error();
 }
 
 TEST(Objects, ReadsSpheresAndWhateverMoved) {
-    const auto objects = parse_json(
-                             R"({"objects":[
+    const auto plan = parse_json(
+                          R"({"objects":[
         {"name":"bob","method":"sphere","radius_m":0.05},
         {"name":"ball 2","method":"sphere","min_radius_m":0.02},
         {"name":"boxes","method":"change"}]})",
-                             "objects.json"
+                          "objects.json"
     )
-                             .and_then(read_objects);
-    ASSERT_TRUE(objects) << to_text(objects.error());
-    ASSERT_EQ(objects->size(), 3u);
-    EXPECT_EQ(std::get<SphereSettings>((*objects)[0].settings).radius_m, 0.05);
-    const auto& free = std::get<SphereSettings>((*objects)[1].settings);
+                          .and_then(read_tracking_plan);
+    ASSERT_TRUE(plan) << to_text(plan.error());
+    const auto& objects = plan->objects;
+    ASSERT_EQ(objects.size(), 3u);
+    EXPECT_EQ(std::get<SphereSettings>(objects[0].settings).radius_m, 0.05);
+    const auto& free = std::get<SphereSettings>(objects[1].settings);
     EXPECT_FALSE(free.radius_m);
     EXPECT_EQ(free.min_radius_m, 0.02);
-    EXPECT_EQ(method_of((*objects)[2]), "change");
+    EXPECT_EQ(method_of(objects[2]), "change");
 }
 
 struct Wrong {

@@ -18,7 +18,7 @@ using test::kNoon;
 using test::PlayedRig;
 using test::TemporaryStore;
 
-const std::vector<ObjectSpec> kBob{{"bob", SphereSettings{.radius_m = 0.05}}};
+const TrackingPlan kBob{{{"bob", SphereSettings{.radius_m = 0.05}}}, {}};
 
 class RigWorkerTest : public testing::Test {
 protected:

@@ -1,0 +1,29 @@
+#pragma once
+
+#include "pipeline/core/camera.hpp"
+#include "pipeline/core/error.hpp"
+#include "pipeline/core/frame.hpp"
+#include "pipeline/preprocess/settings.hpp"
+
+namespace kinectlab {
+
+/// Outliers removed and surfaces smoothed in a whole depth picture, where the settings ask for it.
+/// Not thread-safe.
+class FrameCleaner {
+public:
+    FrameCleaner(const RgbdCamera& camera, const PreprocessSettings& settings);
+
+    /// The frame itself where there is nothing to do, else a copy that is valid until the next
+    /// call. With statistical outliers, a picture of no more readings than neighbours becomes
+    /// empty: none of them has enough. With smoothing, readings so near that the radius is more
+    /// than kMostPixels become 0.
+    [[nodiscard]] Result<const RgbdFrame*> clean(const RgbdFrame& frame);
+
+private:
+    RgbdCamera camera_;
+    std::optional<OutlierSettings> outliers_;
+    std::optional<MovingLeastSquaresSettings> smoothing_;
+    RgbdFrame cleaned_;
+};
+
+}  // namespace kinectlab

@@ -1,0 +1,52 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "pipeline/core/cloud.hpp"
+#include "pipeline/preprocess/distance_kernels.hpp"
+
+namespace kinectlab {
+
+/// Columns [left, right] and rows [top, bottom] of a picture.
+struct PixelWindow {
+    int left, right, top, bottom;
+};
+
+/// An organised cloud in which a metric radius becomes a window of pixels. The cloud itself tells
+/// how far aside each column and row looks (x/z and y/z), so no camera needs to be known: all
+/// points in the columns from c on lie behind the plane through the camera's centre with the least
+/// x/z among them, and the distance to that plane is a bound that holds. Keeps its own padded copy
+/// of the points. Thread-safe once made.
+class PixelWindows {
+public:
+    /// Nothing if the cloud is not organised or not seen from one point: z of both signs or 0.
+    [[nodiscard]] static std::optional<PixelWindows> of(const Cloud& cloud);
+
+    /// Shifts and resizes `window` until it holds every point nearer than `radius` to the one at
+    /// (u, v). False if that takes more than kMostSide pixels: then ask a PointTree.
+    [[nodiscard]] bool fit(int u, int v, Point3 from, float radius, PixelWindow& window) const;
+
+    /// The points in a window.
+    [[nodiscard]] PointRows rows(const PixelWindow& window) const;
+
+    static constexpr int kMostSide = 96;
+    /// What collecting over any window may write.
+    static constexpr int kMostPoints = (kMostSide + 8) * kMostSide + 8;
+
+private:
+    PixelWindows() = default;
+
+    /// The plane that bounds what lies from a column (or row) on to one side.
+    struct Side {
+        float slope, scale;
+    };
+    void find_sides(const Cloud& cloud);
+
+    int width_ = 0, height_ = 0, stride_ = 0;
+    float sign_x_ = 1, sign_y_ = 1, sign_z_ = 1;
+    std::vector<float> x_, y_, z_;
+    std::vector<Side> right_of_, left_of_, below_, above_;
+};
+
+}  // namespace kinectlab
