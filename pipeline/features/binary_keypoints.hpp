@@ -20,7 +20,7 @@ struct BinarySettings {
 /// The fast way to find a spot again: corners by FAST (Rosten & Drummond 2006: 9 of the 16 pixels
 /// of a ring all brighter or all darker than the middle) in a pyramid, turned to their intensity
 /// centroid, described by 256 comparisons of smoothed pixels in a turned pattern (BRIEF, Calonder
-/// et al. 2010; the turning is that of ORB, Rublee et al. 2011). Some ten times faster than SIFT;
+/// et al. 2010; the turning is that of ORB, Rublee et al. 2011). Faster than SIFT;
 /// bears less change of size and view. Keeps its buffers. Not thread-safe.
 class BinaryKeypoints {
 public:

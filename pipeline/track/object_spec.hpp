@@ -89,8 +89,8 @@ struct ColourSettings {
 
 /// How spots of a texture are described.
 enum class TextureSpots {
-    sift,    ///< bears change of size and view; some 10 ms for an object
-    binary,  ///< some 2 ms
+    sift,    ///< bears change of size and view
+    binary,  ///< costs less, bears less change
 };
 
 /// Method "texture": whatever has a print, a pattern or spots on it.
