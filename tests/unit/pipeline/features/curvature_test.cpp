@@ -12,6 +12,7 @@ namespace {
 RgbdCamera fine_camera() {
     RgbdCamera camera;
     camera.depth_unit_m = 5e-5;
+    camera.noise.sigma_steps = 0.05;  // else the surface types allow for a Kinect's noise
     return camera;
 }
 

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <memory>
+
+#include <Eigen/Geometry>
+
+#include "pipeline/core/camera.hpp"
+#include "pipeline/core/frame.hpp"
+#include "pipeline/core/mesh.hpp"
+
+namespace kinectlab::bench {
+
+/// PCL's KLDAdaptiveParticleFilterTracker as in its tutorial: 600 particles, nearest-pair coherence
+/// by distance, the cloud cut to the region around the object and thinned to voxels of 5 mm, the
+/// reference a cloud of the object's surface.
+class ParticleFilter {
+public:
+    /// The object's surface as points about its centre, and where it is at first.
+    ParticleFilter(
+        const RgbdCamera& camera,
+        const std::vector<Eigen::Vector3f>& surface,
+        const Eigen::Isometry3d& T_cam_obj
+    );
+    ~ParticleFilter();
+    ParticleFilter(const ParticleFilter&) = delete;
+    ParticleFilter& operator=(const ParticleFilter&) = delete;
+
+    [[nodiscard]] Eigen::Isometry3d track(const RgbdFrame& frame);
+
+private:
+    struct State;
+    std::unique_ptr<State> state_;
+};
+
+}  // namespace kinectlab::bench
