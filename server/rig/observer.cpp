@@ -45,7 +45,7 @@ Result<std::span<const Observed>> Observer::track(const RgbdFrame& frame) {
             recent.pop_front();
         const std::vector<TrackSample> window(recent.begin(), recent.end());
         std::string name = objects_[sample.object].name;
-        if (sample.identity > 0) name += "-" + std::to_string(sample.identity);
+        if (sample.identity > 0) name.append("-").append(std::to_string(sample.identity));
         Trajectory trajectory =
             to_trajectory(name, window, T_lab_cam_, {.frame_period_s = frame_period_s_});
         observed_.push_back({name, sample, trajectory.samples.back()});
