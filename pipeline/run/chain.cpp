@@ -109,6 +109,13 @@ Result<void> Chain::learn(const RgbdFrame& frame) {
     return {};
 }
 
+Result<void> Chain::uncover(const RgbdFrame& frame) {
+    if (auto ok = state_->check_size(frame); !ok) return ok;
+    state_->reference.uncover(frame.depth);
+    state_->limits_are_old = true;
+    return {};
+}
+
 Result<std::span<const TrackSample>> Chain::track(const RgbdFrame& frame) {
     State& s = *state_;
     if (auto ok = s.check_size(frame); !ok) return tl::unexpected(ok.error());

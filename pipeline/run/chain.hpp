@@ -40,6 +40,9 @@ public:
     /// A frame whose size does not fit the camera is refused.
     [[nodiscard]] Result<void> learn(const RgbdFrame& frame);
 
+    /// Learns only what the frame shows behind things that stood there in the learned ones.
+    [[nodiscard]] Result<void> uncover(const RgbdFrame& frame);
+
     /// One sample for each object (method "change": one for each moving segment, biggest first);
     /// status is tracked or lost. The span is valid until the next call.
     [[nodiscard]] Result<std::span<const TrackSample>> track(const RgbdFrame& frame);
