@@ -34,6 +34,26 @@ Result<void> check(const PendulumSettings& s) {
     return in_range("clock_u", s.clock_u, 0.0, 0.2, "");
 }
 
+// A swing that is seen on one side only looks like one of half the period with every other one
+// hidden.
+Result<void> check_sides(
+    const std::vector<SwingSample>& samples, const SwingFit& fit, double period
+) {
+    std::size_t hidden = 0;
+    for (std::size_t i = fit.begin + 1; i < fit.end; ++i)
+        if (const double gap = (samples[i].t - samples[i - 1].t) / period; gap > 0.5 && gap < 1.5)
+            ++hidden;
+    const double periods = (samples[fit.end - 1].t - samples[fit.begin].t) / period;
+    if (static_cast<double>(hidden) <= periods / 3.0) return {};
+    return fail(
+        ErrorCode::bad_data,
+        "samples",
+        "the bob was out of sight in the same part of every swing, so its period is not sure",
+        "see that nothing hides the bob, and that it does not hang in the way when the scene is "
+        "learned"
+    );
+}
+
 PendulumFit for_plots(
     const Trajectory& trajectory, const std::vector<SwingSample>& samples, const SwingFit& fit
 ) {
@@ -75,6 +95,9 @@ Result<PendulumResult> analyse_pendulum(
     guess->parameters.turning = earth_turning(settings.latitude_deg);
     const auto fit = fit_swing(*samples, *guess, swing_priors(settings));
     if (!fit) return tl::unexpected(fit.error());
+
+    if (auto ok = check_sides(*samples, *fit, guess->period); !ok)
+        return tl::unexpected(ok.error());
 
     PendulumResult result;
     const double duration = (*samples)[fit->end - 1].t - (*samples)[fit->begin].t;

@@ -15,6 +15,7 @@ using std::numbers::pi;
 
 constexpr double kSpan = 60.0;           // s
 constexpr double kStrongestPull = 60.0;  // m/s²: no search for shorter periods than it would cause
+constexpr std::size_t kFewestSamples = 30;
 constexpr double kClearPeak =
     60.0;  // times the noise; the best of a few hundred peaks of noise: 20
 
@@ -87,20 +88,12 @@ double golden_section_maximum(F f, double low, double high) {
     return (low + high) / 2.0;
 }
 
-}  // namespace
+struct Peak {
+    double f = 0.0;           // 1/s
+    double over_noise = 0.0;  // its sum of squares, in those of the noise for each sample
+};
 
-Eigen::Vector2d axis_weights(std::span<const SwingSample> samples) {
-    std::vector<double> x, y;
-    for (const auto& s : samples) {
-        x.push_back(s.sigma.x());
-        y.push_back(s.sigma.y());
-    }
-    const Eigen::Vector2d sigma(median(std::move(x)), median(std::move(y)));
-    return sigma.cwiseInverse() * sigma.minCoeff();
-}
-
-std::optional<double> find_frequency(std::span<const SwingSample> all, double length_m) {
-    const auto samples = liveliest(all);
+Peak highest_peak(std::span<const SwingSample> samples, double length_m) {
     const PlanePath xy = clipped(samples);
     const double total = (xy.rowwise() - xy.colwise().mean()).squaredNorm();
     const double span = samples.back().t - samples.front().t;
@@ -116,14 +109,41 @@ std::optional<double> find_frequency(std::span<const SwingSample> all, double le
         best_speed = speed;
         best = f;
     }
-    if (best == 0.0) return std::nullopt;
+    if (best == 0.0) return {};
     const auto peak = [&](double f) {
         return explained(samples, xy, f);
     };
     best = golden_section_maximum(peak, std::max(best - 2.0 * step, 0.1 / span), best + 2.0 * step);
     const double noise = (total - peak(best)) / n;
-    if (peak(best) < kClearPeak * noise) return std::nullopt;
-    return best;
+    return {best, peak(best) / std::max(noise, 1e-30)};
+}
+
+}  // namespace
+
+Eigen::Vector2d axis_weights(std::span<const SwingSample> samples) {
+    std::vector<double> x, y;
+    for (const auto& s : samples) {
+        x.push_back(s.sigma.x());
+        y.push_back(s.sigma.y());
+    }
+    const Eigen::Vector2d sigma(median(std::move(x)), median(std::move(y)));
+    return sigma.cwiseInverse() * sigma.minCoeff();
+}
+
+std::optional<double> find_frequency(std::span<const SwingSample> all, double length_m) {
+    const auto samples = liveliest(all);
+    // Bringing the bob to its place can be a larger motion than the swing; a part is free of it.
+    for (const std::size_t parts : {1, 2, 4}) {
+        const std::size_t size = samples.size() / parts;
+        if (size < kFewestSamples) break;
+        Peak best;
+        for (std::size_t begin = 0; begin + size <= samples.size(); begin += (size + 1) / 2) {
+            const Peak peak = highest_peak(samples.subspan(begin, size), length_m);
+            if (peak.over_noise > best.over_noise) best = peak;
+        }
+        if (best.over_noise >= kClearPeak) return best.f;
+    }
+    return std::nullopt;
 }
 
 }  // namespace kinectlab

@@ -40,6 +40,12 @@ void Preprocessing::learn(const RgbdFrame& frame) {
     ++learned_;
 }
 
+void Preprocessing::uncover(const RgbdFrame& frame) {
+    if (reference_method_ != ReferenceMethod::scene) return;
+    reference_.uncover(frame.depth);
+    scene_is_new_ = true;
+}
+
 void Preprocessing::update_median(const RgbdFrame& frame) {
     if (median_->add(frame.depth, frame.t)) {
         median_->update();

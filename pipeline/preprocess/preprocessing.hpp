@@ -30,6 +30,9 @@ public:
     /// hole in the scene, and what shows in a hole counts as an object.
     void learn(const RgbdFrame& frame);
 
+    /// Takes into a fixed reference scene what an object uncovered; into no other.
+    void uncover(const RgbdFrame& frame);
+
     /// What is to be looked at instead of the frame (FrameCleaner::clean).
     [[nodiscard]] Result<const RgbdFrame*> clean(const RgbdFrame& frame) {
         return cleaner_.clean(frame);

@@ -106,6 +106,16 @@ void ReferenceScene::learn_pixel(std::size_t i, float s) {
         adopt(i, candidate_[i], hits_[i]);
 }
 
+void ReferenceScene::uncover(std::span<const std::uint16_t> depth) {
+    const auto product = static_cast<float>(scale_.product);
+    for (std::size_t i = 0; i < depth.size(); ++i) {
+        if (depth[i] == 0 || seen_[i] == 0) continue;
+        const float s = product / static_cast<float>(depth[i]);
+        if (s >= disparity_[i] - kNearSpreadSteps) continue;
+        if (note_candidate(i, s, band(s))) adopt(i, candidate_[i], hits_[i]);
+    }
+}
+
 RowRange ReferenceScene::follow(std::span<const std::uint16_t> depth) {
     const RowRange rows{height_ * next_strip_ / kStrips, height_ * (next_strip_ + 1) / kStrips};
     next_strip_ = (next_strip_ + 1) % kStrips;

@@ -29,6 +29,10 @@ public:
     /// believed only against a pixel that was itself seen too rarely to be sure of.
     void learn(std::span<const std::uint16_t> depth);
 
+    /// Takes from a whole frame only what an object uncovered: readings farther than the reference
+    /// by more than noise or drift can be. For recordings, whose later frames are at hand early.
+    void uncover(std::span<const std::uint16_t> depth);
+
     /// Takes in the next strip of a frame in which objects move, one of kStrips strips a call, and
     /// says which rows those were. Never moves a pixel nearer by more than drift.
     RowRange follow(std::span<const std::uint16_t> depth);

@@ -111,6 +111,12 @@ Result<void> Chain::learn(const RgbdFrame& frame) {
     return {};
 }
 
+Result<void> Chain::uncover(const RgbdFrame& frame) {
+    if (auto ok = state_->check_size(frame); !ok) return ok;
+    state_->preprocessing.uncover(frame);
+    return {};
+}
+
 Result<std::span<const TrackSample>> Chain::track(const RgbdFrame& frame) {
     State& s = *state_;
     if (auto ok = s.check_size(frame); !ok) return tl::unexpected(ok.error());

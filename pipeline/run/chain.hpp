@@ -40,6 +40,10 @@ public:
     /// A frame whose size does not fit the camera is refused.
     [[nodiscard]] Result<void> learn(const RgbdFrame& frame);
 
+    /// Learns only what the frame shows behind things that stood there in the learned ones; only
+    /// for a fixed reference scene.
+    [[nodiscard]] Result<void> uncover(const RgbdFrame& frame);
+
     /// One sample for each object (method "change": one for each thing known, biggest first, with
     /// its identity); status is tracked or lost. The span is valid until the next call.
     [[nodiscard]] Result<std::span<const TrackSample>> track(const RgbdFrame& frame);

@@ -1,5 +1,6 @@
 #include "pipeline/simulate/simulate_run.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <string>
@@ -31,6 +32,13 @@ Result<void> check(const RunSettings& settings) {
     return {};
 }
 
+// Where the bob leaves free what it hides at rest: its centre two and a half radii to the side.
+double angle_aside(const RunSettings& settings) {
+    const auto& pendulum = settings.rig.pendulum;
+    const double sine = 2.5 * pendulum.bob_radius_m / pendulum.length_m;
+    return std::min(std::asin(std::min(sine, 1.0)), std::numbers::pi / 6.0);
+}
+
 }  // namespace
 
 Result<RunSummary> simulate_run(const RunSettings& settings, const FrameSink& sink) {
@@ -56,12 +64,18 @@ Result<RunSummary> simulate_run(const RunSettings& settings, const FrameSink& si
         return {};
     };
 
+    const auto hold_at = [&](double angle_rad) -> Result<void> {
+        if (auto ok = rig->apply({Action::displace, angle_rad}); !ok) return ok;
+        while (rig->truth().motion != Motion::held)
+            if (auto ok = show(); !ok) return ok;
+        return show_for(settings.held_s);
+    };
+
     if (auto ok = show_for(settings.rest_s); !ok) return tl::unexpected(ok.error());
-    if (auto ok = rig->apply({Action::displace, settings.amplitude_rad}); !ok)
-        return tl::unexpected(ok.error());
-    while (rig->truth().motion != Motion::held)
-        if (auto ok = show(); !ok) return tl::unexpected(ok.error());
-    if (auto ok = show_for(settings.held_s); !ok) return tl::unexpected(ok.error());
+    if (const double aside = angle_aside(settings); aside > std::abs(settings.amplitude_rad))
+        if (auto ok = hold_at(std::copysign(aside, settings.amplitude_rad)); !ok)
+            return tl::unexpected(ok.error());
+    if (auto ok = hold_at(settings.amplitude_rad); !ok) return tl::unexpected(ok.error());
     if (auto ok = rig->apply({Action::release, 0.0}); !ok) return tl::unexpected(ok.error());
     summary.first_swinging = summary.frames;
     summary.release_s = rig->truth().t_s;

@@ -25,8 +25,9 @@ struct RunSummary {
 /// Receives every frame with its truth; an error stops the run and is handed on.
 using FrameSink = std::function<Result<void>(const RgbdFrame& frame, const Truth& truth)>;
 
-/// At rest, displaced, held, released, swinging: frame k at rig.start + k/30 s, as fast as the
-/// machine can. Same settings, same frames.
+/// At rest, displaced, held, released, swinging; before a small amplitude it is held aside as well,
+/// so that the frames show all that the bob hides at rest: frame k at rig.start + k/30 s, as fast
+/// as the machine can. Same settings, same frames.
 [[nodiscard]] Result<RunSummary> simulate_run(const RunSettings& settings, const FrameSink& sink);
 
 }  // namespace kinectlab::simulate

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iostream>
+#include <limits>
 #include <map>
 
 #include "pipeline/motion/motion.hpp"
@@ -14,29 +16,44 @@ namespace {
 
 constexpr std::chrono::milliseconds kPatience{5000};
 constexpr TimeNs kReferenceTime = kNsPerSecond;
+constexpr TimeNs kUncoverTime = 20 * kNsPerSecond;  // a bob at rest is moved aside well within it
 
 template <class T>
 tl::unexpected<Error> forward(const Result<T>& failed) {
     return tl::unexpected<Error>(failed.error());
 }
 
-TimeNs reference_time(const PreprocessSettings& settings) {
-    if (settings.reference.method == ReferenceMethod::scene) return kReferenceTime;
-    return from_seconds(settings.reference.seconds);
+// Positions are wrong by as much as the assumption is.
+void warn_of_unknown_camera(const std::filesystem::path& path) {
+    std::error_code code;
+    if (!std::filesystem::is_directory(path, code) ||
+        std::filesystem::exists(path / "camera.json", code))
+        return;
+    std::cerr << path.string()
+              << ": has no camera.json; taken for a Kinect with "
+                 "5000 depth counts a metre\n";
 }
 
-Result<void> learn(FrameSource& source, Chain& chain, TimeNs time) {
+// The scene is what the first frames show, and what later ones show behind an object that was at
+// rest there: its place may be hidden again in every frame that counts, as in a swing of a few
+// degrees. Another kind of reference takes its own time and nothing more.
+Result<void> learn(FrameSource& source, Chain& chain, const ReferenceSettings& reference) {
+    const bool scene = reference.method == ReferenceMethod::scene;
+    const TimeNs time = scene ? kReferenceTime : from_seconds(reference.seconds);
+    const TimeNs end = scene ? kUncoverTime : time;
     const std::size_t count = source.info().frame_count.value_or(0);
     const std::size_t most = std::max<std::size_t>(1, count / 4);
     RgbdFrame frame;
     TimeNs first = 0;
-    for (std::size_t i = 0; i < most; ++i) {
+    for (std::size_t i = 0;; ++i) {
         const auto status = source.next(frame, kPatience);
         if (!status) return forward(status);
         if (*status != FrameStatus::frame) break;
         if (i == 0) first = frame.t;
-        if (frame.t - first >= time) break;
-        if (auto learned = chain.learn(frame); !learned) return learned;
+        if (frame.t - first >= end) break;
+        const bool early = i < most && frame.t - first < time;
+        if (auto learned = early ? chain.learn(frame) : chain.uncover(frame); !learned)
+            return learned;
     }
     if (chain.learned_frames() > 0) return {};
     return fail(
@@ -98,6 +115,7 @@ Result<TrackedRecording> track_recording(const std::filesystem::path& path, Trac
     const RecordingOptions options{.with_colour = with_colour};
     auto source = open_recording(path, options);
     if (!source) return forward(source);
+    warn_of_unknown_camera(path);
     TrackedRecording recording;
     recording.source = (*source)->info();
     recording.objects = std::move(plan.objects);
@@ -110,7 +128,7 @@ Result<TrackedRecording> track_recording(const std::filesystem::path& path, Trac
     settings.preprocess = recording.preprocess;
     auto chain = Chain::create(settings);
     if (!chain) return forward(chain);
-    if (auto learned = learn(**source, *chain, reference_time(recording.preprocess)); !learned)
+    if (auto learned = learn(**source, *chain, recording.preprocess.reference); !learned)
         return forward(learned);
     recording.learned_frames = chain->learned_frames();
 

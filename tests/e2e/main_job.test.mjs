@@ -222,6 +222,24 @@ test('a student does all of it by keyboard alone', async () => {
   await context.close();
 });
 
+test('a run that ends while the connection is gone is there when it is back', async () => {
+  const { page, context } = admin;
+  await page.goto('/rigs/rig-1/session');
+  await page.getByRole('button', { name: 'Measure again' }).click();
+  await page.getByLabel('How long to measure').fill('10');
+  await mainButton(page, 'prepare').click();
+  await reach(page, 'release');
+  await mainButton(page, 'release').click();
+  await reach(page, 'stop');
+  await context.setOffline(true);
+  await page.getByText('You see what was last known of the rig.').waitFor();
+  await new Promise((later) => setTimeout(later, 14_000));
+  await context.setOffline(false);
+  await reach(page, 'result');
+  assert.match(await stateSentence(page), /The result is there/);
+  await page.getByTestId('g').waitFor();
+});
+
 test('a lost connection is said and heals by itself, over the network and over a restart', async () => {
   const { page, context } = admin;
   await page.goto('/rigs');

@@ -28,6 +28,8 @@ export interface Situation {
   now: number;
   /** As `releaseLeft` tells it. */
   releaseLeft?: number | null;
+  /** Whether all this is only what was last known: the stream is gone. */
+  lost?: boolean;
 }
 
 const underWay: RunState[] = ['preparing', 'ready', 'releasing', 'measuring', 'analysing'];
@@ -47,6 +49,20 @@ export function nextSlot(bookings: Booking[], now: number): Booking | null {
 }
 
 export function phaseOf(s: Situation): Phase {
+  const phase = knownPhase(s);
+  if (!s.lost) return phase;
+  // A command may still get through, so the button stays; nothing is claimed of the rig.
+  const label = phase.action === 'wait' ? 'Waiting for the connection' : phase.label;
+  return { ...phase, label, tone: 'bad', sentence: 'You see what was last known of the rig. What it does now shows when the connection is back.' };
+}
+
+/** The run to show: the one that the stream tells of, or else the last one if it ended in the viewer's slot, which the stream
+ * forgets over a lost connection. */
+export function shownRun(streamed: Run | null, last: Run | null, slot: Booking | null): Run | null {
+  return streamed ?? (last && !isUnderWay(last.state) && endedInSlot(last, slot) ? last : null);
+}
+
+function knownPhase(s: Situation): Phase {
   if (s.rig.state === 'offline') {
     return wait('bad', 'The rig is switched off or its camera is unplugged. It is tried again by itself; your slot stays yours.', 'Waiting for the rig');
   }

@@ -1,6 +1,6 @@
 import { describe, expect, it } from 'vitest';
 import type { Booking, Rig, Run, RunState } from '../../src/api/types';
-import { endSentence, isOlder, phaseOf, progress, releaseLeft, type Situation } from '../../src/models/run_phase';
+import { endSentence, isOlder, phaseOf, progress, releaseLeft, shownRun, type Situation } from '../../src/models/run_phase';
 
 const now = Date.parse('2026-11-22T09:10:00Z');
 const rig: Rig = {
@@ -32,6 +32,25 @@ describe('the one button', () => {
       expect(phase.action).toBe('prepare');
       expect(phase.sentence).toContain('The bob was not seen.');
     }
+  });
+
+  it('claims nothing of a rig whose stream is gone', () => {
+    const offline = phaseOf(situation({ rig: { ...rig, state: 'offline' }, lost: true }));
+    expect([offline.action, offline.label]).toEqual(['wait', 'Waiting for the connection']);
+    const measuring = phaseOf(situation({ run: run('measuring'), lost: true }));
+    expect(measuring.action).toBe('stop');
+    for (const phase of [offline, measuring]) expect(phase.sentence).toMatch(/^You see what was last known/);
+  });
+
+  it('shows a run that ended while the connection was gone, if it was in the own slot', () => {
+    const ended = run('completed', { ended_at: '2026-11-22T09:10:20Z' });
+    expect(shownRun(null, ended, slot)).toBe(ended);
+    expect(shownRun(null, run('interrupted'), slot)?.state).toBe('interrupted');
+    expect(shownRun(null, run('measuring'), slot)).toBeNull();
+    expect(shownRun(null, run('completed', { created_at: '2026-11-22T08:30:00Z' }), slot)).toBeNull();
+    expect(shownRun(null, ended, null)).toBeNull();
+    const next = run('preparing', { id: 8 });
+    expect(shownRun(next, ended, slot)).toBe(next);
   });
 
   it('begins anew in a slot with the run of another slot on the rig', () => {

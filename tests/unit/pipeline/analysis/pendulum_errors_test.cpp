@@ -49,6 +49,30 @@ TEST(PendulumErrors, InterpolatedSamplesDoNotCount) {
     EXPECT_THAT(error_of(path).message, HasSubstr("seen in 0 of 900 frames"));
 }
 
+// Seen on one side alone, it looks like a smaller swing of half the period: four times g.
+TEST(PendulumErrors, SeenOnOneSideAlone) {
+    const Swing swing{.amplitude_deg = 1.0};
+    Trajectory path = with_noise(generate(swing), 3);
+    for (auto& m : path.samples)
+        if (m.p_lab.x() < swing.pivot.x() + 0.003) m.status = TrackStatus::lost;
+    EXPECT_THAT(error_of(path).message, HasSubstr("out of sight"));
+}
+
+TEST(PendulumErrors, BroughtThereByALargerMotionThanItsSwing) {
+    Trajectory path = generate({.amplitude_deg = 2.0, .seconds = 8.0});
+    const Eigen::Vector3d aside(0.09, 0.0, 0.0);
+    Trajectory before = path;
+    before.samples.assign(150, path.samples.front());
+    for (std::size_t i = 0; i < before.samples.size(); ++i) {
+        before.samples[i].t -= static_cast<TimeNs>(before.samples.size() - i) * kNsPerSecond / 30;
+        if (i < 100) before.samples[i].p_lab += aside;
+    }
+    before.samples.insert(before.samples.end(), path.samples.begin(), path.samples.end());
+    const auto result = analyse_pendulum(with_noise(before, 3), {});
+    ASSERT_TRUE(result) << to_text(result.error());
+    EXPECT_NEAR(result->measurements.front().value, 9.81, 0.03);
+}
+
 TEST(PendulumErrors, FewerThanThreePeriods) {
     for (const double seconds : {1.5, 3.0, 5.5}) {
         const Error error = error_of(with_noise(generate({.seconds = seconds}), 3));

@@ -43,6 +43,22 @@ TEST_F(Reference, OneFrameIsTheScene) {
     EXPECT_EQ(scene.learned_frames(), 1U);
 }
 
+TEST_F(Reference, UncoversOnlyWhatAnObjectHid) {
+    scene.learn(flat(2000));
+    for (int i = 0; i < 2; ++i)
+        scene.uncover(flat(3000));
+    EXPECT_NEAR(depth(), 2000, 1) << "two readings are no stable ones";
+    scene.uncover(flat(3000));
+    EXPECT_NEAR(depth(), 3000, 1);
+    for (int i = 0; i < 5; ++i)
+        scene.uncover(flat(3010));
+    EXPECT_NEAR(depth(), 3000, 1) << "drift is not uncovered";
+    for (int i = 0; i < 5; ++i)
+        scene.uncover(flat(2000));
+    EXPECT_NEAR(depth(), 3000, 1) << "nearer is an object";
+    EXPECT_EQ(scene.learned_frames(), 1U);
+}
+
 TEST_F(Reference, AveragesTheNoiseOfManyFrames) {
     test::BallRoom room;
     room.camera = camera;

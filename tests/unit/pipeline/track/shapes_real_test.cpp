@@ -128,7 +128,9 @@ TEST_P(ShapesReal, TableCansAndBoxesAgreeWithTheLabels) {
             std::abs(one.shape->fit.shape.axis.dot(up)) > 0.99)
             ++upright;
     const bool cans = GetParam() == "test31" || GetParam() == "test33" || GetParam() == "test36";
-    if (cans) EXPECT_GE(upright, 3);
+    if (cans) {
+        EXPECT_GE(upright, 3);
+    }
 }
 
 INSTANTIATE_TEST_SUITE_P(

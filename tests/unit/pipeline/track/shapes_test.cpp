@@ -78,7 +78,9 @@ TEST(Shapes, AllKindsInOneScene) {
     // Biggest first, and no pixel belongs to two.
     std::vector<int> owners(frame.depth.size(), 0);
     for (std::size_t i = 0; i < shapes.size(); ++i) {
-        if (i > 0) EXPECT_GE(shapes[i - 1].pixels.size(), shapes[i].pixels.size());
+        if (i > 0) {
+            EXPECT_GE(shapes[i - 1].pixels.size(), shapes[i].pixels.size());
+        }
         for (const auto pixel : shapes[i].pixels)
             EXPECT_EQ(++owners[pixel], 1);
     }
