@@ -13,6 +13,8 @@ namespace {
 
 constexpr TimeNs kMemory = kNsPerSecond / 2;  // a place older than this says nothing
 constexpr double kOrientationSigma = 0.2;     // rad: less sure than this is not seen
+constexpr double kCertainTurn = 0.01;         // rad: a mesh's facets do not make it this sure
+constexpr double kTryTurn = 0.2;              // rad
 
 /// What keeps an object that was seen a moment ago: less than it takes to recognise one.
 constexpr Acceptance kFollowed{0.25, 0.65, 0.2, 4.0};
@@ -95,6 +97,7 @@ public:
         recognise_lost(frame);
         for (std::size_t i = 0; i < targets_.size(); ++i) {
             if (fits_[i]) {
+                own_up_to_symmetry(*targets_[i].model, frame, *fits_[i]);
                 remember(targets_[i], *fits_[i], frame.t);
                 samples.push_back(sample_of(targets_[i], *fits_[i], frame.t));
                 continue;
@@ -127,6 +130,32 @@ private:
         auto fit = fitter_.fit(frame.depth, *target.model, T_start, {});
         if (fit && !is_accepted(*fit, *target.model, camera_, kFollowed)) fit.reset();
         return fit;
+    }
+
+    /// A mesh has facets even where the thing is round, and they hold on to a turn that nothing
+    /// shows. So an uncertain turn has to prove itself: turned by more than a facet, the object
+    /// must fit worse or find its way back.
+    void own_up_to_symmetry(const ObjectModel& model, const RgbdFrame& frame, ModelFit& fit) {
+        const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> turns(
+            Eigen::Matrix3d(fit.covariance.bottomRightCorner<3, 3>())
+        );
+        const double sigma = std::sqrt(turns.eigenvalues()[2]);
+        if (sigma < kCertainTurn || sigma > kOrientationSigma) return;
+        const Eigen::Vector3d axis = turns.eigenvectors().col(2);
+        for (const double angle : {kTryTurn, -kTryTurn}) {
+            Eigen::Isometry3d start = fit.T_cam_obj;
+            start.linear() = Eigen::AngleAxisd(angle, axis) * start.linear();
+            const auto other = fitter_.fit(frame.depth, model, start, {});
+            if (!other) return;
+            const Eigen::AngleAxisd left(
+                other->T_cam_obj.linear() * fit.T_cam_obj.linear().transpose()
+            );
+            const bool worse = other->quality.rms_steps > 1.1 * fit.quality.rms_steps ||
+                               other->seen_share < 0.95 * fit.seen_share ||
+                               other->outline_share < 0.9 * fit.outline_share;
+            if (left.angle() < 0.5 * kTryTurn || worse) return;
+        }
+        fit.covariance.bottomRightCorner<3, 3>() += axis * axis.transpose();
     }
 
     /// What others were found in is taken out, so that two of a kind are two.
