@@ -29,13 +29,15 @@ inline std::size_t edit_distance(std::string_view a, std::string_view b) {
     return above[b.size()];
 }
 
-/// The name that somebody who typed `given` most likely meant; empty if there are no names.
+/// The name that somebody who typed `given` most likely meant; empty if there are no names. Of
+/// names that begin as `given` does the letters that are missing hardly count.
 inline std::string nearest_name(std::string_view given, const std::vector<std::string>& names) {
     const std::string_view word = given.substr(0, 64);  // a whole pasted file is no misspelling
     std::string best;
     std::size_t best_distance = 0;
     for (const auto& name : names) {
-        const std::size_t distance = edit_distance(word, name);
+        const bool begins_so = word.size() >= 3 && name.compare(0, word.size(), word) == 0;
+        const std::size_t distance = begins_so ? 1 : edit_distance(word, name);
         if (!best.empty() && distance >= best_distance) continue;
         best = name;
         best_distance = distance;
