@@ -45,20 +45,15 @@ struct Region {
     double times_bound;
 };
 
-/// The sphere's own tracker, with its radius known.
+/// The sphere's own tracker; the radius is free, as the peer has it.
 std::optional<Shape> find_sphere(
-    SphereFitter& fitter,
-    const RgbdCamera& camera,
-    const RgbdFrame& frame,
-    MovedPixels pixels,
-    double radius_m
+    SphereFitter& fitter, const RgbdCamera& camera, const RgbdFrame& frame, MovedPixels pixels
 ) {
     const DisparityScale scale(camera);
     const SurfaceSample sample(frame.depth, pixels, camera.depth, scale);
-    const auto guess =
-        sphere_candidate(sample.points(), SphereSettings{.radius_m = radius_m}, scale);
+    const auto guess = sphere_candidate(sample.points(), SphereSettings{}, scale);
     if (!guess) return std::nullopt;
-    const auto fit = fitter.fit(frame.depth, *guess, true);
+    const auto fit = fitter.fit(frame.depth, *guess, false);
     if (!fit) return std::nullopt;
     return Shape{
         ShapeKind::sphere, fit->sphere.centre_cam, Eigen::Vector3d::UnitZ(), fit->sphere.radius};
@@ -81,7 +76,7 @@ void measure(const Region& region, Figures& figures) {
         const double start = thread_seconds();
         std::optional<Shape> found;
         if (region.kind == ShapeKind::sphere) {
-            found = find_sphere(sphere, room.camera, frame, pixels, region.solid.radius);
+            found = find_sphere(sphere, room.camera, frame, pixels);
         } else {
             const auto width = static_cast<std::uint32_t>(room.camera.depth.width);
             image.load(
