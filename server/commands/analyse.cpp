@@ -44,7 +44,8 @@ std::optional<int> parse(int argc, char** argv, Arguments& arguments) {
     )
         ->expected(1)
         ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
-    app.add_option("--out", arguments.out, "folder for result.json, poses.csv and fit.csv");
+    app.add_option("--out", arguments.out, "folder for result.json, poses.csv and fit.csv")
+        ->check(check_path);
     return parse_arguments(app, argc, argv);
 }
 

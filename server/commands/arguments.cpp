@@ -36,6 +36,10 @@ std::function<std::string(const std::string&)> check_number(double low, double h
     };
 }
 
+std::string check_path(const std::string& word) {
+    return word.empty() ? "is empty; give a path" : "";
+}
+
 Result<experiments::Values> parse_settings(const std::vector<std::string>& words) {
     experiments::Values values;
     for (const auto& word : words) {

@@ -21,6 +21,9 @@ namespace kinectlab::commands {
 /// For CLI11's check(): a number from `low` to `high`. CLI11's own range lets NaN through.
 [[nodiscard]] std::function<std::string(const std::string&)> check_number(double low, double high);
 
+/// For CLI11's check() of a path: an empty one is none, e.g. of a variable that was never set.
+[[nodiscard]] std::string check_path(const std::string& word);
+
 /// NAME=VALUE for each --set. Errors name what was given.
 [[nodiscard]] Result<experiments::Values> parse_settings(const std::vector<std::string>& words);
 

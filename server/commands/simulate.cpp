@@ -50,7 +50,9 @@ std::optional<int> parse(int argc, char** argv, Arguments& arguments) {
     );
     app.add_option("EXPERIMENT", arguments.experiment, "what to simulate, e.g. pendulum")
         ->required();
-    app.add_option("--out", arguments.out, "new folder for the recording")->required();
+    app.add_option("--out", arguments.out, "new folder for the recording")
+        ->required()
+        ->check(check_path);
     app.add_option("--seconds", arguments.seconds, "of free motion (default: duration_s)")
         ->check(check_number(0.1, 3600.0));
     app.add_option("--seed", arguments.seed, "of the noise; the same seed gives the same files")

@@ -37,7 +37,7 @@ std::optional<int> parse(int argc, char** argv, Arguments& arguments) {
         ->required();
     app.add_option("--objects", arguments.objects, "JSON file with the objects to track")
         ->required();
-    app.add_option("--out", arguments.out, "CSV file for the poses");
+    app.add_option("--out", arguments.out, "CSV file for the poses")->check(check_path);
     return parse_arguments(app, argc, argv);
 }
 

@@ -230,7 +230,12 @@ void RigWorker::close(lab::RunEvent event, const std::string& reason) {
 Result<lab::Run> RigWorker::start(const lab::Run& run, TrackingPlan plan) {
     const std::lock_guard lock(mutex_);
     if (status_.state == lab::RigState::offline) {
-        return fail(ErrorCode::unavailable, "rig", status_.sentence, "choose another rig");
+        return fail(
+            ErrorCode::unavailable,
+            "rig",
+            status_.sentence,
+            "try again in a moment, or choose another rig"
+        );
     }
     if (order_ || active_.current()) {
         return fail(

@@ -141,7 +141,12 @@ Result<void> BookingRepository::cancel(lab::BookingId id, TimeNs now) {
     );
     SQLite::bind(update, now, id);
     if (update.exec() == 0) {
-        return fail(ErrorCode::not_found, "booking", "there is no booking " + std::to_string(id));
+        return fail(
+            ErrorCode::not_found,
+            "booking",
+            "there is no booking " + std::to_string(id),
+            "it may have been given up already"
+        );
     }
     transaction.commit();
     return {};

@@ -233,9 +233,13 @@ test('a run that ends while the connection is gone is there when it is back', as
   await reach(page, 'stop');
   await context.setOffline(true);
   await page.getByText('You see what was last known of the rig.').waitFor();
+  await mainButton(page, 'stop').click();
+  const refusal = page.getByText('The laboratory does not answer.');
+  await refusal.waitFor();
   await new Promise((later) => setTimeout(later, 14_000));
   await context.setOffline(false);
   await reach(page, 'result');
+  await refusal.waitFor({ state: 'detached' });
   assert.match(await stateSentence(page), /The result is there/);
   await page.getByTestId('g').waitFor();
 });

@@ -44,6 +44,7 @@ describe('wrong arguments end with status 2 and name what was wrong', () => {
     [['simulate'], /EXPERIMENT/],
     [['simulate', 'pendulum'], /--out/],
     [['simulate', 'pendulm', '--out', out], /pendulm/, /did you mean pendulum/],
+    [['simulate', 'pendulum', '--out', ''], /--out/, /give a path/],
     [['simulate', 'pendulum', '--out', out, '--seconds', '-3'], /--seconds/],
     [['simulate', 'pendulum', '--out', out, '--seconds', 'ten'], /--seconds/],
     [['simulate', 'pendulum', '--out', out, '--seconds', 'nan'], /--seconds/, /from 0.1 to 3600/],
