@@ -43,6 +43,8 @@ Result<void> learn(FrameSource& source, Chain& chain, const ReferenceSettings& r
     const TimeNs end = scene ? kUncoverTime : time;
     const std::size_t count = source.info().frame_count.value_or(0);
     const std::size_t most = std::max<std::size_t>(1, count / 4);
+    const double frames = to_seconds(end) * source.info().frame_rate_hz;
+    Progress progress("frames of the scene", std::min(count, static_cast<std::size_t>(frames)));
     RgbdFrame frame;
     TimeNs first = 0;
     for (std::size_t i = 0;; ++i) {
@@ -54,6 +56,7 @@ Result<void> learn(FrameSource& source, Chain& chain, const ReferenceSettings& r
         const bool early = i < most && frame.t - first < time;
         if (auto learned = early ? chain.learn(frame) : chain.uncover(frame); !learned)
             return learned;
+        progress.step();
     }
     if (chain.learned_frames() > 0) return {};
     return fail(
