@@ -28,10 +28,30 @@ namespace websocket = boost::beast::websocket;
 using asio::ip::tcp;
 using boost::system::error_code;
 
+/// A stream may be over although nothing is sent on it: looked at this often.
+constexpr std::chrono::seconds kLookAgain{1};
+
 constexpr int kSendBuffer = 128 * 1024;  ///< bytes: half a second of pictures
 
 /// Without the deflate code: small messages gain nothing and a context costs 300 KB a viewer.
 using Stream = websocket::stream<beast::tcp_stream, false>;
+
+class WebSocketConnection;
+
+/// Wakes a connection's writer from any thread. It never owns the connection: whoever wakes may
+/// hold locks that the connection's end takes, so only the I/O thread may be the last to let go.
+class Waker : public std::enable_shared_from_this<Waker> {
+public:
+    Waker(asio::io_context& io, std::weak_ptr<WebSocketConnection> sleeper)
+        : io_(io), sleeper_(std::move(sleeper)) {}
+
+    void wake();
+
+private:
+    asio::io_context& io_;
+    std::weak_ptr<WebSocketConnection> sleeper_;
+    std::atomic<bool> pending_{false};
+};
 
 class WebSocketConnection : public std::enable_shared_from_this<WebSocketConnection> {
 public:
@@ -48,31 +68,28 @@ public:
           endpoint_(std::move(endpoint)) {}
 
     asio::awaitable<void> run(http::request<http::empty_body> request);
+    void look_again() { sleep_.cancel(); }
 
 private:
     asio::awaitable<void> read_all();
     asio::awaitable<void> write_all();
     asio::awaitable<void> close(websocket::close_code code);
-    void wake();
 
     Engine& engine_;
     std::unique_ptr<Connections::Place> place_;
     Stream stream_;
-    asio::steady_timer sleep_;  ///< never fires by itself: wake() ends the writer's wait
-    std::atomic<bool> wake_pending_{false};
+    asio::steady_timer sleep_;  ///< the writer's wait, ended early by whoever has news
     bool leaving_ = false;  ///< the server goes: what waits is still sent, then the socket closes
     bool over_ = false;
     std::unique_ptr<WebSocketEndpoint> endpoint_;
 };
 
-/// Any thread may call it; many calls before the I/O thread gets round to it count as one.
-void WebSocketConnection::wake() {
-    if (wake_pending_.exchange(true)) return;
-    asio::post(engine_.io, [weak = weak_from_this()] {
-        const auto self = weak.lock();
-        if (!self) return;
-        self->wake_pending_ = false;
-        self->sleep_.cancel();
+/// Many calls before the I/O thread gets round to it count as one.
+void Waker::wake() {
+    if (pending_.exchange(true)) return;
+    asio::post(io_, [self = shared_from_this()] {
+        self->pending_ = false;
+        if (const auto connection = self->sleeper_.lock()) connection->look_again();
     });
 }
 
@@ -90,7 +107,7 @@ asio::awaitable<void> WebSocketConnection::write_all() {
         const auto message = endpoint_->next();
         if (!message && leaving_) co_return co_await close(websocket::close_code::going_away);
         if (!message) {
-            sleep_.expires_at(std::chrono::steady_clock::time_point::max());
+            sleep_.expires_after(kLookAgain);
             error_code woken;
             co_await sleep_.async_wait(asio::redirect_error(asio::use_awaitable, woken));
             continue;
@@ -145,9 +162,8 @@ asio::awaitable<void> WebSocketConnection::run(http::request<http::empty_body> r
         connection->sleep_.cancel();
     };
     if (engine_.stopping) place_->close_soon();
-    endpoint_->opened([weak = weak_from_this()] {
-        if (const auto connection = weak.lock()) connection->wake();
-    });
+    const auto waker = std::make_shared<Waker>(engine_.io, weak_from_this());
+    endpoint_->opened([waker] { waker->wake(); });
     auto reader = [self]() -> asio::awaitable<void> {
         co_await self->read_all();
     };

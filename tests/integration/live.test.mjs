@@ -85,14 +85,20 @@ test('the camera picture is a JPEG, also without a viewer', async (t) => {
   assert.deepEqual([...answer.body.subarray(0, 2), ...answer.body.subarray(-2)], [0xff, 0xd8, 0xff, 0xd9]);
 });
 
-test('viewers come and go', async (t) => {
+test('viewers come and go, and one who stays misses nothing of the stream', async (t) => {
   const server = await startServer(t);
   const admin = await firstAdmin(server);
   await rigIdle(admin);
-  for (let round = 0; round < 5; ++round) {
+  const stays = await watch(admin);
+  for (let round = 0; round < 20; ++round) {
     const viewers = await Promise.all(Array.from({ length: 10 }, () => watch(admin)));
     await eventually(() => viewers, (all) => all.every((one) => one.messages[0]?.type === 'hello'), { seconds: 5 });
+    // At the moment of a picture: a viewer may end while something is being given to it.
+    const pictures = stays.pictures.length;
+    await eventually(() => stays.pictures.length, (n) => n > pictures, { seconds: 5, every: 1 });
     viewers.forEach((one, i) => (i % 2 ? one.socket.close() : one.socket.terminate()));
   }
+  const pictures = stays.pictures.length;
+  await eventually(() => stays.pictures.length, (n) => n > pictures + 5, { seconds: 5 });
   assert.equal((await admin.get('/health')).status, 200);
 });
