@@ -29,9 +29,9 @@ void gather(const PointTree& tree, Point3 from, float radius, Neighbours& found)
     int size = 0;
     float limit = std::nextafter(squared_radius, 1e30F);  // the radius itself is still inside
     tree.visit_within(from, limit, [&](const PointTree::Leaf& leaf) {
-        const PointRows rows = tree.rows(leaf);
-        for (int i = 0; i < rows.columns; ++i) {
-            const float dx = rows.x[i] - from.x, dy = rows.y[i] - from.y, dz = rows.z[i] - from.z;
+        for (std::uint32_t i = leaf.begin; i < leaf.begin + leaf.count; ++i) {
+            const float dx = tree.x()[i] - from.x, dy = tree.y()[i] - from.y;
+            const float dz = tree.z()[i] - from.z;
             const auto to = static_cast<std::size_t>(size);
             found.x[to] = dx * scale;
             found.y[to] = dy * scale;

@@ -8,11 +8,6 @@
 
 namespace kinectlab {
 
-/// Columns [left, right] and rows [top, bottom] of a picture.
-struct PixelWindow {
-    int left, right, top, bottom;
-};
-
 /// An organised cloud in which a metric radius becomes a window of pixels. The cloud itself tells
 /// how far aside each column and row looks (x/z and y/z), so no camera needs to be known: all
 /// points in the columns from c on lie behind the plane through the camera's centre with the least
@@ -23,28 +18,28 @@ public:
     /// Nothing if the cloud is not organised or not seen from one point: z of both signs or 0.
     [[nodiscard]] static std::optional<PixelWindows> of(const Cloud& cloud);
 
-    /// Shifts and resizes `window` until it holds every point nearer than `radius` to the one at
-    /// (u, v). False if that takes more than kMostSide pixels: then ask a PointTree.
-    [[nodiscard]] bool fit(int u, int v, Point3 from, float radius, PixelWindow& window) const;
+    /// Strips of the window about (u, v) that holds every point nearer than `radius` to the one
+    /// there, without what its corners hold farther away.
+    void fit(int u, int v, Point3 from, float radius, std::vector<Strip>& strips) const;
 
-    /// The points in a window.
-    [[nodiscard]] PointRows rows(const PixelWindow& window) const;
-
-    static constexpr int kMostSide = 96;
-    /// What collecting over any window may write.
-    static constexpr int kMostPoints = (kMostSide + 8) * kMostSide + 8;
+    /// The points that strips are cut from.
+    [[nodiscard]] PointStrips points(std::span<const Strip> strips) const {
+        return {x_.data(), y_.data(), z_.data(), stride_, strips};
+    }
 
 private:
     PixelWindows() = default;
 
     /// The plane that bounds what lies from a column (or row) on to one side.
     struct Side {
-        float slope, scale;
+        float slope, scale, sine;
     };
     void find_sides(const Cloud& cloud);
+    [[nodiscard]] static Side side_at(float slope);
 
     int width_ = 0, height_ = 0, stride_ = 0;
     float sign_x_ = 1, sign_y_ = 1, sign_z_ = 1;
+    float columns_per_slope_ = 0, rows_per_slope_ = 0;  ///< nearly, for first guesses
     std::vector<float> x_, y_, z_;
     std::vector<Side> right_of_, left_of_, below_, above_;
 };

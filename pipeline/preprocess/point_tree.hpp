@@ -29,11 +29,10 @@ public:
         std::uint32_t count = 0;  ///< points
     };
     [[nodiscard]] std::span<const Leaf> leaves() const { return leaves_; }
-    [[nodiscard]] PointRows rows(const Leaf& leaf) const {
-        const auto count = static_cast<int>(leaf.count);
-        return {
-            x_.data() + leaf.begin, y_.data() + leaf.begin, z_.data() + leaf.begin, 0, 1, count};
-    }
+    /// All points by their places, padded with NaN to where eight more can be read.
+    [[nodiscard]] const float* x() const { return x_.data(); }
+    [[nodiscard]] const float* y() const { return y_.data(); }
+    [[nodiscard]] const float* z() const { return z_.data(); }
     [[nodiscard]] Point3 point(std::uint32_t place) const {
         return {x_[place], y_[place], z_[place]};
     }

@@ -10,33 +10,54 @@
 namespace kinectlab {
 namespace {
 
-/// Values with many ties, and room for padding behind them.
-std::vector<float> some_values(std::size_t n) {
+constexpr auto kRoom = static_cast<std::size_t>(DistanceKernels::kPadding);
+
+/// Values that are all different, that often are the same, or that differ in their last bits only.
+std::vector<float> some_values(std::size_t n, int kind) {
     std::vector<float> values;
-    for (std::size_t i = 0; i < n; ++i)
-        values.push_back(static_cast<float>(*rc::gen::inRange(0, 40)) * 0.37F);
-    values.resize(n + 8);
+    for (std::size_t i = 0; i < n; ++i) {
+        const auto whole = static_cast<float>(*rc::gen::inRange(0, kind == 0 ? 1'000'000 : 40));
+        values.push_back(kind == 2 ? 1.0F + whole * 1.2e-7F : whole * 0.37F);
+    }
+    values.resize(n + kRoom);
     return values;
 }
 
-RC_GTEST_PROP(DistanceKernels, SumsTheSmallestRoots, ()) {
-    const int n = *rc::gen::inRange(1, 300);
-    const int k = *rc::gen::inRange(1, n + 1);
-    const std::vector<float> values = some_values(static_cast<std::size_t>(n));
+void expect_smallest(const std::vector<float>& values, int n, int k, float limit) {
     std::vector<float> sorted(values.begin(), values.begin() + n);
     std::sort(sorted.begin(), sorted.end());
     double expected = 0.0;
     for (int i = 0; i < k; ++i)
         expected += static_cast<double>(std::sqrt(sorted[static_cast<std::size_t>(i)]));
     for (const auto* kernels : {&distance_kernels(), &portable_distance_kernels()}) {
-        for (const float limit : {sorted.back() + 1.0F, HUGE_VALF}) {
-            std::vector<float> copy = values;
-            const Rank rank = rank_of(*kernels, copy.data(), n, k, limit);
-            RC_ASSERT(rank.below <= k);
-            const double sum = sum_of_smallest_roots(*kernels, copy.data(), n, k, rank);
-            RC_ASSERT(std::abs(sum - expected) < 1e-9 * (1.0 + expected));
-        }
+        std::vector<float> copy = values;
+        const SumOfRoots found = kernels->sum_smallest(copy.data(), n, k, limit);
+        RC_ASSERT(static_cast<float>(found.sum / k) == static_cast<float>(expected / k));
+        RC_ASSERT(found.last >= sorted[static_cast<std::size_t>(k - 1)]);
+        RC_ASSERT(found.last <= limit);
+        if (k < n) RC_ASSERT(found.last <= sorted[static_cast<std::size_t>(k)]);
     }
+}
+
+RC_GTEST_PROP(DistanceKernels, SumsTheSmallestRoots, ()) {
+    const int n = *rc::gen::inRange(1, 300);
+    const int k = *rc::gen::inRange(1, n + 1);
+    const auto values = some_values(static_cast<std::size_t>(n), *rc::gen::inRange(0, 3));
+    const float most = *std::max_element(values.begin(), values.begin() + n);
+    for (const float limit : {std::nextafter(most, HUGE_VALF), most + 1.0F, 1e6F, HUGE_VALF})
+        expect_smallest(values, n, k, limit);
+}
+
+RC_GTEST_PROP(DistanceKernels, SumsTheSmallestRootsOfVeryUnequalValues, ()) {
+    const int n = *rc::gen::inRange(1, 300);
+    const int k = *rc::gen::inRange(1, n + 1);
+    std::vector<float> values;
+    for (int i = 0; i < n; ++i)
+        values.push_back(std::ldexp(1.0F, *rc::gen::inRange(-30, 8)));
+    if (*rc::gen::inRange(0, 2) == 0) std::fill_n(values.begin(), n / 2, 0.0F);
+    values.resize(values.size() + kRoom);
+    for (const float limit : {256.0F, 1e30F, HUGE_VALF})
+        expect_smallest(values, n, k, limit);
 }
 
 RC_GTEST_PROP(DistanceKernels, CollectsWhatLiesWithin, ()) {
@@ -56,9 +77,13 @@ RC_GTEST_PROP(DistanceKernels, CollectsWhatLiesWithin, ()) {
     std::vector<std::vector<float>> found;
     for (const auto* kernels : {&distance_kernels(), &portable_distance_kernels()}) {
         std::vector<float> out(room + 8);
-        const PointRows points{x.data(), y.data(), z.data(), stride, rows, columns};
+        std::vector<Strip> strips;
+        for (int column = 0; column < columns; column += 8)
+            strips.push_back({column, rows});
+        const PointStrips points{x.data(), y.data(), z.data(), stride, strips};
         const int n = kernels->collect(points, {5, 6, 7}, 90.0F, out.data());
         out.resize(static_cast<std::size_t>(n));
+        std::sort(out.begin(), out.end());
         found.push_back(out);
     }
     std::vector<float> expected;
@@ -67,6 +92,7 @@ RC_GTEST_PROP(DistanceKernels, CollectsWhatLiesWithin, ()) {
         if (const float squared = dx * dx + dy * dy + dz * dz; squared < 90.0F)
             expected.push_back(squared);
     }
+    std::sort(expected.begin(), expected.end());
     RC_ASSERT(found[0] == expected);
     RC_ASSERT(found[1] == expected);
 }

@@ -85,6 +85,38 @@ TEST(Outliers, AloneInMidAirIsAnOutlier) {
     );
 }
 
+TEST(Outliers, AFewPointsOrManyThatAreFarFromAllOthers) {
+    for (const int every : {1500, 7}) {
+        int seen = 0;
+        const Cloud sparse = render(small_camera(), [&](int u, int, const auto&) {
+            ++seen;
+            return seen % every == 0 ? 0.4 + 0.01 * (seen % 50) : (u < 20 ? 3.0 : 0.0);
+        });
+        expect_brute_force(sparse, 30, "one point of " + std::to_string(every), 3);
+    }
+}
+
+TEST(Outliers, DepthInLayersAsASensorGivesIt) {
+    int seen = 0;
+    const Cloud layers = render(small_camera(), [&](int, int, const auto&) {
+        seen = (seen * 75 + 74) % 65537;
+        return 3.0 + 0.03 * (seen % 4);
+    });
+    for (const int k : {5, 40, 100})
+        expect_brute_force(layers, k, "layers", 5);
+}
+
+TEST(Outliers, APictureOfEqualPoints) {
+    Cloud equal = blank_cloud(64, 48);
+    std::fill(equal.x.begin(), equal.x.end(), 0.1F);
+    std::fill(equal.y.begin(), equal.y.end(), 0.2F);
+    std::fill(equal.z.begin(), equal.z.end(), 1.0F);
+    const auto found = find_outliers(equal, {});
+    ASSERT_TRUE(found);
+    EXPECT_EQ(found->count, 0U);
+    EXPECT_EQ(found->threshold_m, 0.0);
+}
+
 TEST(Outliers, ThresholdIsMeanPlusFactorTimesDeviation) {
     const Cloud scene = as_list(messy_scene(small_camera(), 4));
     const auto found = find_outliers(scene, {20, 1.5});
