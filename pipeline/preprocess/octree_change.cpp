@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <string>
-#include <unordered_map>
 
 #include "pipeline/core/hot_loop.hpp"
+#include "pipeline/core/vector8.hpp"
+#include "pipeline/preprocess/voxel_counts.hpp"
 
 namespace kinectlab {
 namespace {
@@ -20,21 +22,38 @@ struct Cells {
 };
 constexpr std::int32_t kNoCell = std::numeric_limits<std::int32_t>::min();
 
-struct Range {
-    float low, high;
+/// The box about a batch's readings that are whole: x, y and z.
+struct alignas(32) Reach {
+    std::array<float, 3> low, high;
 };
 
-/// Least and greatest of the readings that are whole.
-KINECTLAB_HOT_LOOP Range range_of(const float* a, const float* b, const float* c, std::size_t n) {
-    float low = std::numeric_limits<float>::infinity();
-    float high = -low;
-    for (std::size_t i = 0; i < n; ++i) {
-        const float whole = (a[i] - a[i]) + (b[i] - b[i]) + (c[i] - c[i]);  // 0, or NaN
-        const float value = a[i] + whole;
-        low = value < low ? value : low;
-        high = value > high ? value : high;
+KINECTLAB_HOT_LOOP void reach_of(
+    const float* x, const float* y, const float* z, std::size_t n, Reach& reach
+) {
+    constexpr float kInfinity = std::numeric_limits<float>::infinity();
+    Float8 low[3] = {all8(kInfinity), all8(kInfinity), all8(kInfinity)};
+    Float8 high[3] = {-low[0], -low[1], -low[2]};
+    const auto add = [&](const Float8& a, const Float8& b, const Float8& c) {
+        const Float8 whole = (a - a) + (b - b) + (c - c);  // 0, or NaN, which is neither < nor >
+        const Float8 point[3] = {a + whole, b + whole, c + whole};
+        for (int k = 0; k < 3; ++k) {
+            low[k] = choose8(point[k] < low[k], point[k], low[k]);
+            high[k] = choose8(point[k] > high[k], point[k], high[k]);
+        }
+    };
+    std::size_t i = 0;
+    for (; i + 8 <= n; i += 8)
+        add(load8(x + i), load8(y + i), load8(z + i));
+    for (; i < n; ++i)
+        add(all8(x[i]), all8(y[i]), all8(z[i]));
+    for (std::size_t k = 0; k < 3; ++k) {
+        reach.low[k] = kInfinity;
+        reach.high[k] = -kInfinity;
+        for (int lane = 0; lane < 8; ++lane) {
+            reach.low[k] = std::min(reach.low[k], low[k][lane]);
+            reach.high[k] = std::max(reach.high[k], high[k][lane]);
+        }
     }
-    return {low, high};
 }
 
 KINECTLAB_HOT_LOOP void cells_along(
@@ -49,6 +68,15 @@ KINECTLAB_HOT_LOOP void cells_along(
         const double place = (values[i] - low) / voxel_m;
         const double inside = place > 0.0 ? (place < kMostCells ? place : kMostCells) : 0.0;  // NaN
         cells[i] = origin + static_cast<std::int32_t>(inside);
+    }
+}
+
+KINECTLAB_HOT_LOOP void mark_holes(
+    const float* x, const float* y, const float* z, std::size_t n, std::int32_t* cells
+) {
+    for (std::size_t i = 0; i < n; ++i) {
+        const float whole = (x[i] - x[i]) + (y[i] - y[i]) + (z[i] - z[i]);
+        cells[i] = whole == 0.0F ? cells[i] : kNoCell;
     }
 }
 
@@ -75,20 +103,22 @@ Result<void> for_cells(const Cloud& cloud, OctreeBox& box, Visit&& visit) {
         cells_along(cloud.x.data() + first, n, low[0], voxel, origin[0], cells.x.data());
         cells_along(cloud.y.data() + first, n, low[1], voxel, origin[1], cells.y.data());
         cells_along(cloud.z.data() + first, n, low[2], voxel, origin[2], cells.z.data());
-        for (std::size_t i = 0; i < n; ++i)
-            if (!cloud.valid(first + i)) cells.x[i] = kNoCell;
+        mark_holes(
+            cloud.x.data() + first,
+            cloud.y.data() + first,
+            cloud.z.data() + first,
+            n,
+            cells.x.data()
+        );
         visit(first, n, cells);
     };
     for (std::size_t first = 0; first < cloud.size(); first += kBatch) {
         const std::size_t n = std::min(kBatch, cloud.size() - first);
-        const float* x = cloud.x.data() + first;
-        const float* y = cloud.y.data() + first;
-        const float* z = cloud.z.data() + first;
-        const Range in_x = range_of(x, y, z, n);
-        const Range in_y = range_of(y, z, x, n);
-        const Range in_z = range_of(z, x, y, n);
-        if (in_x.low > in_x.high) continue;  // nothing but holes
-        if (box.holds(in_x.low, in_y.low, in_z.low) && box.holds(in_x.high, in_y.high, in_z.high)) {
+        Reach reach;
+        reach_of(cloud.x.data() + first, cloud.y.data() + first, cloud.z.data() + first, n, reach);
+        const auto& [low, high] = reach;
+        if (low[0] > high[0]) continue;  // nothing but holes
+        if (box.holds(low[0], low[1], low[2]) && box.holds(high[0], high[1], high[2])) {
             convert(first, n);
             continue;
         }
@@ -102,25 +132,22 @@ Result<void> for_cells(const Cloud& cloud, OctreeBox& box, Visit&& visit) {
     return {};
 }
 
+/// Points in new voxels.
+struct NewPoints {
+    std::vector<std::array<std::int32_t, 3>> cells;
+    std::vector<std::size_t> points;
+};
+
 /// Leaves only points that share their voxel with enough others.
-void drop_sparse(
-    const std::vector<std::array<std::int32_t, 3>>& cells,
-    const std::vector<std::size_t>& points,
-    int least_points,
-    OctreeChange& change
-) {
-    struct Hash {
-        std::size_t operator()(const std::array<std::int32_t, 3>& cell) const {
-            return VoxelSet::block_of(cell[0], cell[1], cell[2]) * 64 +
-                   VoxelSet::bit_of(cell[0], cell[1], cell[2]);
-        }
-    };
-    std::unordered_map<std::array<std::int32_t, 3>, int, Hash> number;
-    for (const auto& cell : cells)
-        ++number[cell];
-    for (std::size_t k = 0; k < points.size(); ++k) {
-        if (number[cells[k]] >= least_points) continue;
-        change.mask[points[k]] = 0;
+void drop_sparse(const NewPoints& found, int least_points, OctreeChange& change) {
+    VoxelCounts counts(found.points.size());
+    std::vector<std::uint32_t> places;
+    places.reserve(found.points.size());
+    for (const auto& [x, y, z] : found.cells)
+        places.push_back(counts.add(x, y, z));
+    for (std::size_t k = 0; k < places.size(); ++k) {
+        if (counts.points_at(places[k]) >= least_points) continue;
+        change.mask[found.points[k]] = 0;
         --change.count;
     }
 }
@@ -158,8 +185,7 @@ Result<OctreeChange> OctreeReference::changed(const Cloud& cloud, int least_poin
         );
     OctreeChange change;
     change.mask.assign(cloud.size(), 0);
-    std::vector<std::array<std::int32_t, 3>> new_cells;
-    std::vector<std::size_t> new_points;
+    NewPoints found;
     OctreeBox box = box_;
     const auto compare = [&](std::size_t first, std::size_t n, const Cells& cells) {
         std::uint64_t block = 0;  // neighbours mostly lie in the block of the last point
@@ -175,13 +201,13 @@ Result<OctreeChange> OctreeReference::changed(const Cloud& cloud, int least_poin
             change.mask[first + i] = 1;
             ++change.count;
             if (least_points > 1) {
-                new_cells.push_back({x, y, z});
-                new_points.push_back(first + i);
+                found.cells.push_back({x, y, z});
+                found.points.push_back(first + i);
             }
         }
     };
     if (auto done = for_cells(cloud, box, compare); !done) return tl::unexpected(done.error());
-    if (least_points > 1) drop_sparse(new_cells, new_points, least_points, change);
+    if (least_points > 1) drop_sparse(found, least_points, change);
     return change;
 }
 
