@@ -4,21 +4,16 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <numeric>
 #include <vector>
 
 #include <Eigen/Cholesky>
 
+#include "pipeline/preprocess/wall_peak.hpp"
+
 namespace kinectlab {
 namespace {
 
-constexpr int kBins = 1024;            // one step each: everything beyond 0.34 m
-constexpr int kHalfWindow = 3;         // a flat wall's readings spread over these bins
-constexpr double kWallShare = 0.10;    // of the readings at least, in the window
-constexpr double kBehindShare = 0.05;  // of the readings at most, behind the wall
-constexpr double kFootShare = 0.01;    // of the peak's height: there the peak ends
-constexpr int kMaxReach = 12;          // steps from the peak to where it ends
-constexpr int kSharp = 4;              // a peak that ends nearer is a wall across the optical axis
+constexpr int kSharp = 4;  // a peak that ends nearer is a wall across the optical axis
 
 constexpr std::size_t kMostSamples = 8192;  // of the picture, for a slanted wall
 constexpr double kBaseline_px = 32.0;       // over which slopes are taken: noise of 0.025 steps/px
@@ -28,74 +23,6 @@ constexpr int kCandidates = 3;       // planes tried
 constexpr double kLensShare = 0.82;  // focal length of such cameras, of the picture's width
 constexpr double kMostTilt = 1.7;    // tan 60°
 constexpr std::array kGates{12.0, 6.0, 3.0, 3.0};  // steps about the plane, fit by fit
-
-using Histogram = std::array<int, kBins>;
-
-/// Four counters for each bin in turn: neighbours fall in the same bin, and one counter would wait
-/// for itself.
-Histogram histogram_of(std::span<const float> disparity) {
-    std::array<Histogram, 4> bins{};
-    const auto count = [&](std::size_t i) {
-        const int bin = static_cast<int>(disparity[i]);
-        if (bin >= 0 && bin < kBins) ++bins[i % 4][static_cast<std::size_t>(bin)];
-    };
-    for (std::size_t i = 0; i < disparity.size(); ++i)
-        count(i);
-    Histogram all = bins[0];
-    for (std::size_t bin = 0; bin < kBins; ++bin)
-        all[bin] += bins[1][bin] + bins[2][bin] + bins[3][bin];
-    all[0] = 0;  // no reading
-    return all;
-}
-
-int window_sum(const Histogram& bins, int centre) {
-    const int first = std::max(0, centre - kHalfWindow);
-    const int last = std::min(kBins - 1, centre + kHalfWindow);
-    return std::accumulate(bins.begin() + first, bins.begin() + last + 1, 0);
-}
-
-/// The farthest bin around which a tenth of all readings lie, moved on to the top of its peak.
-std::optional<int> farthest_peak(const Histogram& bins, double total) {
-    for (int bin = 0; bin < kBins; ++bin) {
-        if (window_sum(bins, bin) < kWallShare * total) continue;
-        while (bin + 1 < kBins && window_sum(bins, bin + 1) > window_sum(bins, bin))
-            ++bin;
-        return bin;
-    }
-    return std::nullopt;
-}
-
-struct Peak {
-    int top = 0;
-    int foot = 0;  ///< first bin that is not cut away
-};
-
-/// The far wall's peak, if it ends on both sides and little lies behind it.
-std::optional<Peak> wall_peak(const Histogram& bins) {
-    const double total = std::accumulate(bins.begin(), bins.end(), 0.0);
-    const auto centre = farthest_peak(bins, total);
-    if (total == 0.0 || !centre) return std::nullopt;
-    const auto first = bins.begin() + std::max(0, *centre - kHalfWindow);
-    const auto last = bins.begin() + std::min(kBins - 1, *centre + kHalfWindow);
-    const int top = static_cast<int>(std::max_element(first, last + 1) - bins.begin());
-
-    const int far_side = std::max(0, top - 2 * kHalfWindow);
-    const double behind = std::accumulate(bins.begin(), bins.begin() + far_side, 0.0);
-    if (behind > kBehindShare * total) return std::nullopt;
-
-    const double height = bins[static_cast<std::size_t>(top)];
-    const auto ends = [&](int bin) {
-        return bin < 0 || bin >= kBins || bins[static_cast<std::size_t>(bin)] < kFootShare * height;
-    };
-    int far = 1, near = 1;
-    while (far < kMaxReach && !ends(top - far))
-        ++far;
-    while (near < kMaxReach && !ends(top + near))
-        ++near;
-    if (far == kMaxReach) return std::nullopt;
-    // One bin more, because the top lies anywhere in its own.
-    return Peak{top, top + std::min(near, far + 1) + 1};
-}
 
 struct Sample {
     double u, v, s;
@@ -109,8 +36,8 @@ struct Plane {
 
 class SlantedWall {
 public:
-    SlantedWall(std::span<const float> disparity, int width, int column_step)
-        : disparity_(disparity), width_(width), column_step_(column_step) {
+    SlantedWall(std::span<const float> disparity, int width, int row_step)
+        : disparity_(disparity), width_(width), row_step_(row_step) {
         const std::size_t step = std::max<std::size_t>(1, disparity.size() / kMostSamples) | 1U;
         for (std::size_t i = 0; i < disparity.size(); i += step)
             if (disparity[i] > 0.0F) samples_.push_back(at(i));
@@ -135,29 +62,31 @@ private:
     [[nodiscard]] Sample at(std::size_t i) const {
         const auto width = static_cast<std::size_t>(width_);
         return {
-            static_cast<double>(i % width) * column_step_,
-            static_cast<double>(i / width),
+            static_cast<double>(i % width),
+            static_cast<double>(i / width) * row_step_,
             disparity_[i]};
     }
 
     /// Every sample votes for the slopes to the reading right of it and to that below.
     void vote() {
-        const int across = std::max(1, static_cast<int>(kBaseline_px) / column_step_);
-        const auto down = static_cast<std::size_t>(kBaseline_px) * static_cast<std::size_t>(width_);
+        constexpr int kAcross = static_cast<int>(kBaseline_px);
+        const int rows = std::max(1, kAcross / row_step_);
+        const auto down = static_cast<std::size_t>(rows) * static_cast<std::size_t>(width_);
         votes_.assign(kSlopeBins * kSlopeBins, 0);
         for (const auto& p : samples_) {
-            const auto column = static_cast<int>(p.u) / column_step_;
-            const auto i = static_cast<std::size_t>(p.v) * static_cast<std::size_t>(width_) +
+            const auto column = static_cast<int>(p.u);
+            const auto i = static_cast<std::size_t>(static_cast<int>(p.v) / row_step_) *
+                               static_cast<std::size_t>(width_) +
                            static_cast<std::size_t>(column);
-            if (column + across >= width_ || i + down >= disparity_.size()) continue;
-            const double right = disparity_[i + static_cast<std::size_t>(across)];
+            if (column + kAcross >= width_ || i + down >= disparity_.size()) continue;
+            const double right = disparity_[i + static_cast<std::size_t>(kAcross)];
             const double below = disparity_[i + down];
             if (right <= 0.0 || below <= 0.0) continue;
             const auto bin = [](double slope) {
                 return static_cast<int>(std::floor(slope / kSlopeBin)) + kSlopeBins / 2;
             };
-            const int a = bin((right - p.s) / (across * column_step_));
-            const int b = bin((below - p.s) / kBaseline_px);
+            const int a = bin((right - p.s) / kAcross);
+            const int b = bin((below - p.s) / (rows * row_step_));
             if (a < 0 || b < 0 || a >= kSlopeBins || b >= kSlopeBins) continue;
             ++votes_[static_cast<std::size_t>(b * kSlopeBins + a)];
         }
@@ -239,25 +168,25 @@ private:
     [[nodiscard]] bool grazing(const Plane& plane) const {
         const Sample middle = at(disparity_.size() / 2 + static_cast<std::size_t>(width_ / 2));
         const double ahead = plane.a * middle.u + plane.b * middle.v + plane.c;
-        const double f = kLensShare * width_ * column_step_;
+        const double f = kLensShare * width_;
         return ahead <= 0.0 || f * std::hypot(plane.a, plane.b) > kMostTilt * ahead;
     }
 
     std::span<const float> disparity_;
-    int width_, column_step_;
+    int width_, row_step_;
     std::vector<Sample> samples_;
     std::vector<int> votes_;
 };
 
 }  // namespace
 
-std::optional<DepthCut> wall_cut(std::span<const float> disparity, int width, int column_step) {
+std::optional<DepthCut> wall_cut(std::span<const float> disparity, int width, int row_step) {
     if (disparity.empty() || width < 1) return std::nullopt;
     const auto peak = wall_peak(histogram_of(disparity));
     const std::optional<DepthCut> level =
         peak ? std::optional(DepthCut{static_cast<double>(peak->foot), 0.0, 0.0}) : std::nullopt;
     if (peak && peak->foot - peak->top <= kSharp) return level;
-    SlantedWall slanted(disparity, width, column_step);
+    SlantedWall slanted(disparity, width, row_step);
     if (peak)
         if (const auto cut = slanted.find_near(peak->top + 0.5)) return cut;
     if (const auto cut = slanted.find()) return cut;

@@ -26,11 +26,11 @@ struct DepthCut {
 /// the wall are not cut away with it.
 ///
 /// `disparity` in steps, 0 = no reading, rows of `width` values, which stand for every
-/// `column_step`th column. Nothing is returned where no wall dominates: less than a tenth of the
+/// `row_step`th row. Nothing is returned where no wall dominates: less than a tenth of the
 /// scene in one narrow peak, more than a twentieth of it behind, or a plane that is seen at a
 /// grazing angle as a floor is.
 [[nodiscard]] std::optional<DepthCut> wall_cut(
-    std::span<const float> disparity, int width, int column_step = 1
+    std::span<const float> disparity, int width, int row_step = 1
 );
 
 }  // namespace kinectlab

@@ -11,13 +11,13 @@
 namespace kinectlab {
 namespace {
 
-constexpr int kEvery = 8;
+constexpr std::size_t kEvery = 8;
 
 KINECTLAB_HOT_LOOP void sample_disparity(
-    const std::uint16_t* depth, int samples, float product, float* disparity
+    const std::uint16_t* depth, int width, float product, float* disparity
 ) {
-    for (int i = 0; i < samples; ++i) {
-        const auto counts = static_cast<float>(static_cast<int>(depth[kEvery * i]));
+    for (int i = 0; i < width; ++i) {
+        const auto counts = static_cast<float>(static_cast<int>(depth[i]));
         disparity[i] = counts > 0.0F ? product / counts : 0.0F;
     }
 }
@@ -71,18 +71,13 @@ Result<void> check(std::size_t pixels, int width, std::size_t room) {
     return {};
 }
 
-/// Every kEvery-th reading of each row.
+/// Every kEvery-th row.
 std::vector<float> thinned(std::span<const std::uint16_t> depth, int width, float product) {
-    const int samples = (width + kEvery - 1) / kEvery;
-    const auto rows = depth.size() / static_cast<std::size_t>(width);
-    std::vector<float> disparity(rows * static_cast<std::size_t>(samples));
-    for (std::size_t v = 0; v < rows; ++v)
-        sample_disparity(
-            depth.data() + v * static_cast<std::size_t>(width),
-            samples,
-            product,
-            disparity.data() + v * static_cast<std::size_t>(samples)
-        );
+    const auto row = static_cast<std::size_t>(width);
+    const std::size_t step = kEvery * row;
+    std::vector<float> disparity((depth.size() + step - row) / step * row);
+    for (std::size_t v = 0; v * row < disparity.size(); ++v)
+        sample_disparity(depth.data() + v * step, width, product, disparity.data() + v * row);
     return disparity;
 }
 
@@ -96,9 +91,8 @@ Result<DepthPass> pass_nearer_than_wall(
 ) {
     if (auto ok = check(depth.size(), width, near.size()); !ok) return tl::unexpected(ok.error());
     const auto product = static_cast<float>(scale.product);
-    const int samples = (width + kEvery - 1) / kEvery;
     DepthPass pass;
-    pass.cut = wall_cut(thinned(depth, width, product), samples, kEvery);
+    pass.cut = wall_cut(thinned(depth, width, product), width, kEvery);
     if (!pass.cut || pass.cut->level()) {
         if (pass.cut) pass.farthest = farthest_of(*pass.cut, scale);
         keep_nearer(depth.data(), depth.size(), pass.farthest, near.data());

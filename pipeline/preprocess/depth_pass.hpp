@@ -17,7 +17,7 @@ struct DepthPass {
 };
 
 /// The pass-through filter in depth for a single frame without a reference (the paper's III.B.1):
-/// finds the far wall in the frame's own histogram (wall_cut, from every eighth reading: the
+/// finds the far wall in the frame's own histogram (wall_cut, from every eighth row: the
 /// peak is the same) and writes to `near` the readings before it, 0 for the others. Without a wall
 /// everything passes. `depth` has rows of `width` counts, 0 = no reading. `near` may be `depth`
 /// itself. Errors: `near` of another size; a width that the picture is no multiple of.
