@@ -75,6 +75,9 @@ KINECTLAB_AVX2 inline void count_within(
 
 /// At most this many values are compared each with each.
 constexpr int kFew = 32;
+// On a surface the count grows with the squared distance, give or take this many.
+constexpr int kGive = 9;
+constexpr int kSmall = 512;
 
 /// Two limits between which the k-th smallest lies: `at_low` values are at most `low`, fewer than
 /// k, and `at_high` at most `high`. Few lie between them, or all those are equal to `high`.
@@ -84,12 +87,14 @@ struct Bracket {
 };
 
 KINECTLAB_AVX2 inline Bracket bracket_of(const float* values, int size, int k, float limit) {
-    // On a surface the count grows with the squared distance, give or take a few.
-    constexpr float kGive = 9.0F;
     const float each = limit / static_cast<float>(size);
     const float middle = each * (static_cast<float>(k) + 0.5F);
     Bracket all{-1.0F, limit, 0, size};
-    Bracket near{middle - kGive * each, std::min(middle + kGive * each, limit), 0, 0};
+    Bracket near{
+        middle - static_cast<float>(kGive) * each,
+        std::min(middle + static_cast<float>(kGive) * each, limit),
+        0,
+        0};
     count_within(values, size, near.low, near.high, near.at_low, near.at_high);
     if (near.at_low < k) {
         all.low = near.low;
@@ -152,6 +157,29 @@ KINECTLAB_AVX2 inline SumOfRoots sum_few(const float* values, int size, int k) {
     return {sum_of(sums) + (k - taken) * static_cast<double>(std::sqrt(last)), last};
 }
 
+/// Adds up the roots of what is at most `low` and brings what lies above it, up to `high`, to
+/// `between`; returns how many those are.
+KINECTLAB_AVX2 inline int split(
+    const float* values, int size, float low, float high, float* between, double& sum
+) {
+    const __m256 lows = _mm256_set1_ps(low);
+    const __m256 highs = _mm256_set1_ps(high);
+    float* end = between;
+    __m256d sums = _mm256_setzero_pd();
+    for (int i = 0; i < size; i += 8) {
+        const __m256 value = _mm256_loadu_ps(values + i);
+        const __m256 below = at_most(value, lows);
+        sums = _mm256_add_pd(sums, in_double(_mm256_sqrt_ps(_mm256_and_ps(value, below))));
+        const __m256 inside = _mm256_andnot_ps(below, at_most(value, highs));
+        const auto set = static_cast<std::uint32_t>(_mm256_movemask_ps(inside));
+        _mm256_storeu_ps(end, packed(value, set));
+        end += std::popcount(set);
+    }
+    _mm256_storeu_ps(end, _mm256_set1_ps(std::numeric_limits<float>::infinity()));
+    sum = sum_of(sums);
+    return static_cast<int>(end - between);
+}
+
 }  // namespace
 
 KINECTLAB_AVX2 SumOfRoots sum_smallest_avx2(float* values, int size, int k, float limit) {
@@ -159,34 +187,27 @@ KINECTLAB_AVX2 SumOfRoots sum_smallest_avx2(float* values, int size, int k, floa
     limit = std::min(limit, std::numeric_limits<float>::max());  // the padding lies above
     for (int lanes = 0; lanes < kStep; lanes += 8)
         _mm256_storeu_ps(values + size + lanes, infinity);
-    const Bracket bracket =
-        size == k ? Bracket{limit, limit, k, k} : bracket_of(values, size, k, limit);
-    const __m256 low = _mm256_set1_ps(bracket.low);
-    const __m256 high = _mm256_set1_ps(bracket.high);
-    const bool few = bracket.at_high - bracket.at_low <= kFew;
-    std::array<float, kFew + 8> between;
-    float* end = between.data();
-    __m256d sums = _mm256_setzero_pd();
-    for (int i = 0; i < size; i += 8) {
-        const __m256 value = _mm256_loadu_ps(values + i);
-        const __m256 below = at_most(value, low);
-        sums = _mm256_add_pd(sums, in_double(_mm256_sqrt_ps(_mm256_and_ps(value, below))));
-        if (!few) continue;
-        const auto set = static_cast<std::uint32_t>(
-            _mm256_movemask_ps(_mm256_andnot_ps(below, at_most(value, high)))
-        );
-        _mm256_storeu_ps(end, packed(value, set));
-        end += std::popcount(set);
+    std::array<float, kSmall + 8> between;
+    double sum = 0.0;
+
+    // Where `limit` leaves out most of what is not wanted, few lie above a limit that is guessed.
+    if (size <= kSmall && size - k + kGive <= kFew) {
+        const float low = limit * static_cast<float>(k - kGive) / static_cast<float>(size);
+        const int above = split(values, size, low, limit, between.data(), sum);
+        if (size - above < k && above <= kFew) {
+            const SumOfRoots rest = sum_few(between.data(), above, k - (size - above));
+            return {sum + rest.sum, rest.last};
+        }
     }
+    const Bracket bracket = bracket_of(values, size, k, limit);
     const int missing = k - bracket.at_low;
-    if (missing == 0) return {sum_of(sums), bracket.low};
-    if (!few)
-        return {
-            sum_of(sums) + missing * static_cast<double>(std::sqrt(bracket.high)), bracket.high};
-    _mm256_storeu_ps(end, infinity);
-    const SumOfRoots rest =
-        sum_few(between.data(), static_cast<int>(end - between.data()), missing);
-    return {sum_of(sums) + rest.sum, rest.last};
+    if (bracket.at_high - bracket.at_low > kFew) {  // all of them are equal
+        split(values, size, bracket.low, bracket.low, between.data(), sum);
+        return {sum + missing * static_cast<double>(std::sqrt(bracket.high)), bracket.high};
+    }
+    const int few = split(values, size, bracket.low, bracket.high, between.data(), sum);
+    const SumOfRoots rest = sum_few(between.data(), few, missing);
+    return {sum + rest.sum, rest.last};
 }
 #endif
 
