@@ -10,6 +10,8 @@
 #include "pipeline/core/vector8.hpp"
 #include "pipeline/preprocess/voxel_counts.hpp"
 
+#pragma GCC diagnostic ignored "-Wpsabi"  // eight floats are passed to inlined functions only
+
 namespace kinectlab {
 namespace {
 
