@@ -1,0 +1,25 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "pipeline/core/camera.hpp"
+#include "pipeline/core/disparity.hpp"
+#include "pipeline/track/correlated_noise.hpp"
+#include "pipeline/track/fitted_shape.hpp"
+#include "pipeline/track/shape_pixels.hpp"
+
+namespace kinectlab {
+
+/// A sphere, cylinder or cone refined on gathered pixels; nothing if they determine none or it does
+/// not settle. A fixed size stays.
+[[nodiscard]] std::optional<ShapeFit> fit_round(
+    ShapePixels& pixels,
+    const Pinhole& camera,
+    const DisparityScale& scale,
+    const Shape& guess,
+    bool fixed_size,
+    CorrelatedNoise& noise
+);
+
+}  // namespace kinectlab

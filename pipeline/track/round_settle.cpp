@@ -1,0 +1,143 @@
+#include "pipeline/track/round_settle.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/Cholesky>
+#include <Eigen/Geometry>
+
+#include "pipeline/track/fitted_shape.hpp"
+
+namespace kinectlab {
+namespace {
+
+constexpr int kChoices = 2;           // of the pixels at the last gate
+constexpr double kLongestStep = 0.3;  // of the radius; rad for angles
+constexpr double kMaxSize_m = 2.0, kMaxAngle = 1.4, kMinAngle = 0.03;
+constexpr double kSettled = 1e-2;  // of a standard deviation: a smaller step changes nothing
+constexpr double kStillMoving = 1.0;
+
+/// Across the axis e1 goes sideways as the camera sees it and e2 towards the camera.
+Eigen::Matrix3d frame_of(const Shape& shape) {
+    const Eigen::Vector3d a =
+        shape.kind == ShapeKind::sphere ? Eigen::Vector3d::UnitY() : shape.axis;
+    Eigen::Vector3d sideways = shape.point.cross(a);
+    if (sideways.norm() < 1e-3 * shape.point.norm()) sideways = a.unitOrthogonal();
+    Eigen::Matrix3d R_cam_shape;
+    R_cam_shape.col(0) = sideways.normalized();
+    R_cam_shape.col(1) = a.cross(R_cam_shape.col(0));
+    R_cam_shape.col(2) = a;
+    return R_cam_shape;
+}
+
+RoundEquations equations(const ShapePixels& pixels, const RoundWay& way) {
+    RoundEquations sums;
+    const NormalSums found = pixels.sums();
+    std::size_t k = 0;
+    for (int row = 0; row < 6; ++row)
+        for (int column = 0; column <= row; ++column, ++k) {
+            const bool both = way.active[static_cast<std::size_t>(row)] &&
+                              way.active[static_cast<std::size_t>(column)];
+            if (both)
+                sums.information(row, column) = sums.information(column, row) = found.products[k];
+        }
+    for (int row = 0; row < 6; ++row)
+        if (way.active[static_cast<std::size_t>(row)])
+            sums.gradient[row] = found.gradient[static_cast<std::size_t>(row)];
+    sums.pixels = found.weights;
+    return sums;
+}
+
+/// The step, cut short where it would leave the shape behind.
+Vector6d bounded(const Vector6d& step, const Shape& shape) {
+    const double reach = shape.kind == ShapeKind::cone ? 0.05 : shape.size;
+    const double shift = step.head<3>().norm() / (kLongestStep * reach);
+    const double turn = step.segment<2>(3).norm() / kLongestStep;
+    const double growth = std::abs(step[5]) / (kLongestStep * shape.size);
+    return step / std::max({1.0, shift, turn, growth});
+}
+
+void move(Shape& shape, const Eigen::Matrix3d& R_cam_shape, const Vector6d& step) {
+    shape.point += R_cam_shape * step.head<3>();
+    if (shape.kind != ShapeKind::sphere)
+        shape.axis =
+            (shape.axis + R_cam_shape * Eigen::Vector3d(step[4], -step[3], 0.0)).normalized();
+    shape.size += step[5];
+}
+
+bool has_sound_size(const Shape& shape) {
+    const bool cone = shape.kind == ShapeKind::cone;
+    return shape.size > (cone ? kMinAngle : 1e-3) && shape.size < (cone ? kMaxAngle : kMaxSize_m);
+}
+
+}  // namespace
+
+std::array<bool, 6> unknowns_of(ShapeKind kind, bool fixed_size) {
+    switch (kind) {
+        case ShapeKind::sphere:
+            return {true, true, true, false, false, !fixed_size};
+        case ShapeKind::cylinder:
+            return {true, true, false, true, true, !fixed_size};
+        case ShapeKind::cone:
+            return {true, true, true, true, true, !fixed_size};
+        case ShapeKind::plane:
+            break;
+    }
+    return {true, true, true, false, false, false};
+}
+
+void choose_shape_pixels(
+    ShapePixels& pixels, const DisparityScale& scale, const Shape& shape, const RoundWay& way
+) {
+    // Rays that meet a slimmer shape meet this one surely.
+    Shape slim = shape;
+    const bool cone = shape.kind == ShapeKind::cone;
+    const double deeper = cone ? way.rim_m / std::sin(shape.size) : 0.0;
+    slim.point += deeper * shape.axis;
+    if (!cone) slim.size = std::max(0.5 * shape.size, shape.size - way.rim_m);
+    const RoundOptics optics =
+        round_optics(slim, shape, way.R_cam_shape, 1.0 / scale.inverse_depth_step);
+    choose_pixels(pixels.round(), optics, way.low - deeper, way.high - deeper);
+}
+
+void linearise_shape(
+    ShapePixels& pixels, const DisparityScale& scale, const Shape& shape, const RoundWay& way
+) {
+    const RoundOptics optics =
+        round_optics(shape, shape, way.R_cam_shape, 1.0 / scale.inverse_depth_step);
+    linearise_round(pixels.round(), optics, way.gate_steps);
+}
+
+bool settle(
+    ShapePixels& pixels,
+    const DisparityScale& scale,
+    Shape& shape,
+    RoundWay& way,
+    RoundEquations& sums
+) {
+    const double last_gate = kLastGateSigmas * way.sigma;
+    double length = 0.0;  // of a step, in standard deviations of what it changes
+    int at_last_gate = 0;
+    for (int i = 0; i < kMostFitSteps; ++i) {
+        way.R_cam_shape = frame_of(shape);
+        if (way.choose) choose_shape_pixels(pixels, scale, shape, way);
+        linearise_shape(pixels, scale, shape, way);
+        sums = equations(pixels, way);
+        if (sums.pixels < 0.5 * kFewestFitPixels) return false;
+        const auto solver = sums.information.ldlt();
+        if (solver.info() != Eigen::Success || !solver.isPositive()) return false;
+        const Vector6d step = solver.solve(sums.gradient);
+        if (!step.allFinite()) return false;
+        length = std::sqrt(std::max(0.0, step.dot(sums.gradient))) / way.sigma;
+        move(shape, way.R_cam_shape, bounded(step, shape));
+        if (!has_sound_size(shape)) return false;
+        const bool last = way.gate_steps <= last_gate;
+        if (last && length < kSettled) return true;
+        // Pixels at the rim that come and go would keep the fit from settling.
+        if (last && ++at_last_gate >= kChoices) way.choose = false;
+        way.gate_steps = std::max(last_gate, 0.5 * way.gate_steps);
+    }
+    return length < kStillMoving;
+}
+
+}  // namespace kinectlab

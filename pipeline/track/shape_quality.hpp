@@ -1,0 +1,15 @@
+#pragma once
+
+#include "pipeline/core/track_sample.hpp"
+#include "pipeline/track/shape_pixels.hpp"
+
+namespace kinectlab {
+
+/// How well a shape explains the pixels it was last linearised at.
+struct ShapeQuality {
+    TrackQuality quality;
+    double cost = 1.0;  ///< as ShapeFit's
+};
+[[nodiscard]] ShapeQuality judge_fit(const ShapePixels& pixels, double gate_steps);
+
+}  // namespace kinectlab
