@@ -119,4 +119,10 @@ std::optional<ShapeFit> fit_plane(
     return fit;
 }
 
+double misfit_plane(ShapePixels& pixels, const DisparityScale& scale, const Shape& guess) {
+    const double sigma = pixels.mean_sigma(scale);
+    const auto plane = settle_plane(pixels, guess, sigma, 1.0 / scale.inverse_depth_step);
+    return plane ? judge_fit(pixels, kLastGateSigmas * sigma).cost : 1.0;
+}
+
 }  // namespace kinectlab

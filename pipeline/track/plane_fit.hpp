@@ -19,4 +19,9 @@ namespace kinectlab {
     CorrelatedNoise& noise
 );
 
+/// The cost that ShapeFit::cost tells; 1 if the pixels determine no plane.
+[[nodiscard]] double misfit_plane(
+    ShapePixels& pixels, const DisparityScale& scale, const Shape& guess
+);
+
 }  // namespace kinectlab

@@ -17,8 +17,27 @@ constexpr double kRimAtFirst = 0.7;  // px inside the outline: what is farther o
 constexpr double kMinRim = 0.02;     // px
 constexpr double kRoughRim = 2.0;    // times σ²: the sensor's rims are worse than its faces
 constexpr double kRimSigmas = 3.0;   // of the shape across the rays, once it is known
+constexpr int kStepsToCompare = 8;
 constexpr double kEndGateSigmas = 3.0;
 constexpr double kEndMarginPx = 1.5;
+
+/// A pixel's width at the shape, m.
+double px_at(const Shape& shape, const Pinhole& camera) {
+    return shape.point.norm() / camera.fx;
+}
+
+RoundWay first_way(
+    const ShapePixels& pixels,
+    const Pinhole& camera,
+    const DisparityScale& scale,
+    const Shape& guess
+) {
+    RoundWay way;
+    way.sigma = pixels.mean_sigma(scale);
+    way.gate_steps = kFirstGateSigmas * way.sigma;
+    way.rim_m = kRimAtFirst * px_at(guess, camera);
+    return way;
+}
 
 /// All pixels that meet it tell where it ends; a cylinder's point becomes its middle, where shift
 /// and turn part.
@@ -56,7 +75,6 @@ bool rim_is_sound(
     RoundWay wide = narrow;
     wide.rim_m = wide_m;
     choose_shape_pixels(pixels, scale, shape, wide);
-    linearise_shape(pixels, scale, shape, wide);
     const std::vector<float>& used = pixels.used;
     // Those of the wide rim are marked by a height that is none.
     for (std::size_t i = 0; i < pixels.offered; ++i)
@@ -93,20 +111,26 @@ std::optional<ShapeFit> fit_round(
     const Pinhole& camera,
     const DisparityScale& scale,
     const Shape& guess,
+    FitStart start,
     bool fixed_size,
     CorrelatedNoise& noise
 ) {
     if (!(guess.size > 0.0)) return std::nullopt;
     ShapeFit fit;
     fit.shape = guess;
-    const double px_m = guess.point.norm() / camera.fx;
-    RoundWay way;
-    way.sigma = pixels.mean_sigma(scale);
+    const double px_m = px_at(guess, camera);
+    RoundWay way = first_way(pixels, camera, scale, guess);
     way.active = unknowns_of(guess.kind, fixed_size);
-    way.gate_steps = kFirstGateSigmas * way.sigma;
-    way.rim_m = kRimAtFirst * px_m;
+    if (start == FitStart::refined) {  // one step tells how sure it is now
+        way.gate_steps = kLastGateSigmas * way.sigma;
+        way.most_steps = 1;
+        way.may_stop_short = true;
+    }
     RoundEquations sums;
     if (!settle(pixels, scale, fit.shape, way, sums)) return std::nullopt;
+    way.most_steps = kMostFitSteps;
+    way.may_stop_short = false;
+    linearise_shape(pixels, scale, fit.shape, way);
     const bool long_one = guess.kind != ShapeKind::sphere;
     if (long_one) bound_ends(pixels, camera.fx, fit.shape, way);
     // The rim is known as well as the shape's place.
@@ -130,6 +154,20 @@ std::optional<ShapeFit> fit_round(
     fit.quality = found.quality;
     fit.cost = found.cost;
     return fit;
+}
+
+double misfit_round(
+    ShapePixels& pixels, const Pinhole& camera, const DisparityScale& scale, const Shape& guess
+) {
+    if (!(guess.size > 0.0)) return 1.0;
+    RoundWay way = first_way(pixels, camera, scale, guess);
+    way.active = unknowns_of(guess.kind, false);
+    way.most_steps = kStepsToCompare;
+    way.may_stop_short = true;
+    Shape shape = guess;
+    RoundEquations sums;
+    if (!settle(pixels, scale, shape, way, sums)) return 1.0;
+    return judge_fit(pixels, kLastGateSigmas * way.sigma).cost;
 }
 
 }  // namespace kinectlab

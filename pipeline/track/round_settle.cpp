@@ -13,8 +13,10 @@ namespace {
 
 constexpr int kChoices = 2;           // of the pixels at the last gate
 constexpr double kLongestStep = 0.3;  // of the radius; rad for angles
+constexpr double kShortestCone_m = 0.05;
 constexpr double kMaxSize_m = 2.0, kMaxAngle = 1.4, kMinAngle = 0.03;
-constexpr double kSettled = 1e-2;  // of a standard deviation: a smaller step changes nothing
+constexpr double kSettled = 3e-2;   // of a standard deviation: a smaller step changes nothing
+constexpr double kShrinking = 0.7;  // from step to step; else it swings about the solution
 constexpr double kStillMoving = 1.0;
 
 /// Across the axis e1 goes sideways as the camera sees it and e2 towards the camera.
@@ -48,9 +50,12 @@ RoundEquations equations(const ShapePixels& pixels, const RoundWay& way) {
     return sums;
 }
 
-/// The step, cut short where it would leave the shape behind.
-Vector6d bounded(const Vector6d& step, const Shape& shape) {
-    const double reach = shape.kind == ShapeKind::cone ? 0.05 : shape.size;
+/// The step, cut short where it would leave the shape behind. A slim cone's apex may be far from
+/// what is seen of it, and has as far to go.
+Vector6d bounded(const Vector6d& step, const Shape& shape, const Eigen::Vector3d& middle_cam) {
+    const bool cone = shape.kind == ShapeKind::cone;
+    const double reach =
+        cone ? std::max(kShortestCone_m, height_on(shape, middle_cam)) : shape.size;
     const double shift = step.head<3>().norm() / (kLongestStep * reach);
     const double turn = step.segment<2>(3).norm() / kLongestStep;
     const double growth = std::abs(step[5]) / (kLongestStep * shape.size);
@@ -116,10 +121,11 @@ bool settle(
     RoundEquations& sums
 ) {
     const double last_gate = kLastGateSigmas * way.sigma;
+    const Eigen::Vector3d middle_cam = pixels.middle(scale);
     double length = 0.0;  // of a step, in standard deviations of what it changes
     int at_last_gate = 0;
-    for (int i = 0; i < kMostFitSteps; ++i) {
-        way.R_cam_shape = frame_of(shape);
+    way.R_cam_shape = frame_of(shape);
+    for (int i = 0; i < way.most_steps; ++i) {
         if (way.choose) choose_shape_pixels(pixels, scale, shape, way);
         linearise_shape(pixels, scale, shape, way);
         sums = equations(pixels, way);
@@ -128,8 +134,12 @@ bool settle(
         if (solver.info() != Eigen::Success || !solver.isPositive()) return false;
         const Vector6d step = solver.solve(sums.gradient);
         if (!step.allFinite()) return false;
+        const double before = length;
         length = std::sqrt(std::max(0.0, step.dot(sums.gradient))) / way.sigma;
-        move(shape, way.R_cam_shape, bounded(step, shape));
+        const bool swings = !way.choose && length > kShrinking * before;
+        const Vector6d change = bounded(step, shape, middle_cam);
+        move(shape, way.R_cam_shape, swings ? 0.5 * change : change);
+        way.R_cam_shape = frame_of(shape);
         if (!has_sound_size(shape)) return false;
         const bool last = way.gate_steps <= last_gate;
         if (last && length < kSettled) return true;
@@ -137,7 +147,7 @@ bool settle(
         if (last && ++at_last_gate >= kChoices) way.choose = false;
         way.gate_steps = std::max(last_gate, 0.5 * way.gate_steps);
     }
-    return length < kStillMoving;
+    return way.may_stop_short || length < kStillMoving;
 }
 
 }  // namespace kinectlab

@@ -4,6 +4,7 @@
 
 #include "pipeline/core/disparity.hpp"
 #include "pipeline/core/track_sample.hpp"
+#include "pipeline/track/fitted_shape.hpp"
 #include "pipeline/track/shape.hpp"
 #include "pipeline/track/shape_pixels.hpp"
 
@@ -18,7 +19,9 @@ struct RoundWay {
     double rim_m = 0.0;             ///< inside the outline: left out
     double low = -1e6, high = 1e6;  ///< along the axis: beyond is left out
     bool choose = true;             ///< the pixels anew, for the shape as it is now
-    std::array<bool, 6> active{};   ///< of t1, t2, t3, ω1, ω2 and the size
+    int most_steps = kMostFitSteps;
+    bool may_stop_short = false;   ///< else not to settle in so many steps is a failure
+    std::array<bool, 6> active{};  ///< of t1, t2, t3, ω1, ω2 and the size
     Eigen::Matrix3d R_cam_shape = Eigen::Matrix3d::Identity();
 
     [[nodiscard]] bool has_ends() const { return low > -1e5; }

@@ -1,6 +1,7 @@
 #include "pipeline/track/shape_pixels.hpp"
 
 #include <algorithm>
+#include <numeric>
 
 namespace kinectlab {
 namespace {
@@ -27,6 +28,10 @@ void ShapePixels::gather(
         pixel.push_back(pixels[k]);
     }
     offered = s.size();
+    const double n = static_cast<double>(std::max<std::size_t>(1, offered));
+    mean_x = std::accumulate(x.begin(), x.end(), 0.0) / n;
+    mean_y = std::accumulate(y.begin(), y.end(), 0.0) / n;
+    mean_s = std::accumulate(s.begin(), s.end(), 0.0) / n;
     const std::size_t padded = (offered + kFitLanes - 1) / kFitLanes * kFitLanes;
     for (auto* field : {&x, &y, &s, &used, &weight, &residual, &height})
         field->resize(padded, 0.0F);
@@ -35,10 +40,11 @@ void ShapePixels::gather(
 }
 
 double ShapePixels::mean_sigma(const DisparityScale& scale) const {
-    double sum = 0.0;
-    for (std::size_t i = 0; i < offered; ++i)
-        sum += s[i];
-    return scale.sigma_at(sum / static_cast<double>(std::max<std::size_t>(1, offered)));
+    return scale.sigma_at(mean_s);
+}
+
+Eigen::Vector3d ShapePixels::middle(const DisparityScale& scale) const {
+    return Eigen::Vector3d(mean_x, mean_y, 1.0) * scale.metres(mean_s);
 }
 
 RoundPixels ShapePixels::round() {

@@ -14,7 +14,8 @@ namespace kinectlab {
 /// The readings that a fit rests on, as rays and disparities, and what its last linearisation made
 /// of each. Padded to a multiple of kFitLanes with readings of 0. Keeps its buffers.
 struct ShapePixels {
-    std::size_t offered = 0;     ///< without the padding
+    std::size_t offered = 0;  ///< without the padding
+    double mean_x = 0.0, mean_y = 0.0, mean_s = 0.0;
     std::vector<float> x, y, s;  ///< ray and disparity
     std::vector<std::uint32_t> pixel;
     std::vector<float> used, weight, residual, height;  ///< see RoundPixels
@@ -27,6 +28,8 @@ struct ShapePixels {
 
     /// Noise of a reading at their mean disparity, in steps.
     [[nodiscard]] double mean_sigma(const DisparityScale& scale) const;
+    /// Where the mean ray reads the mean disparity, m.
+    [[nodiscard]] Eigen::Vector3d middle(const DisparityScale& scale) const;
 
     [[nodiscard]] RoundPixels round();
     [[nodiscard]] PlanePixels flat();

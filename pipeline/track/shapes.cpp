@@ -285,7 +285,7 @@ struct ShapeDetector::State {
             const auto k = static_cast<std::size_t>(kind);
             if (!settings.kinds[k]) continue;
             if (kind == shape.kind) fits[k] = sound_fit(shape);
-            search_shape(kind, own, limits_of(kind), rough(), kSearchTries, 2, guesses);
+            search_shape(kind, own, limits_of(kind), rough(), {kSearchTries, 2}, guesses);
             for (const auto& guess : guesses) {
                 auto fit = sound_fit(guess.shape);
                 if (fit && (!fits[k] || fit->cost < fits[k]->cost)) fits[k] = std::move(fit);
