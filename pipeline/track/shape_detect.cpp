@@ -71,10 +71,7 @@ double SegmentShapes::best_cost(const DisparityImage& image, ShapeKind kind) {
     SizeLimits limits;
     if (kind == ShapeKind::cone) limits = {{}, kLeastConeAngle, kMostConeAngle};
     search_shape(kind, points_, limits, kRough, kRivals, guesses_);
-    double least = 1.0;
-    for (const auto& guess : guesses_)
-        least = std::min(least, rival_.misfit(image, compared_, guess.shape));
-    return least;
+    return rival_.least_misfit(image, compared_, guesses_);
 }
 
 bool SegmentShapes::is_its_kind(const DisparityImage& image, const ShapeFit& fit) {

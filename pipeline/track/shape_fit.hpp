@@ -11,6 +11,7 @@
 #include "pipeline/track/fitted_shape.hpp"
 #include "pipeline/track/round_fit.hpp"
 #include "pipeline/track/shape_pixels.hpp"
+#include "pipeline/track/shape_search.hpp"
 
 namespace kinectlab {
 
@@ -32,18 +33,16 @@ public:
         FitStart start = FitStart::guess
     );
 
-    /// How badly a shape of the guess's kind, its size free, explains the pixels: ShapeFit::cost
-    /// after a few steps; 1 if they lead nowhere. In a fraction of fit()'s time, and teaches
-    /// nothing about the noise.
-    [[nodiscard]] double misfit(
-        const DisparityImage& image, std::span<const std::uint32_t> pixels, const Shape& guess
+    /// How badly the best of some guesses, its size free, explains the pixels: ShapeFit::cost after
+    /// a few steps; 1 if they lead nowhere. In a fraction of fit()'s time, and teaches nothing
+    /// about the noise.
+    [[nodiscard]] double least_misfit(
+        const DisparityImage& image,
+        std::span<const std::uint32_t> pixels,
+        std::span<const ShapeCandidate> guesses
     );
 
 private:
-    [[nodiscard]] bool gather(
-        const DisparityImage& image, std::span<const std::uint32_t> pixels, const Shape& guess
-    );
-
     Pinhole camera_;
     DisparityScale scale_;
     ShapePixels pixels_;

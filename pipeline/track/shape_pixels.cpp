@@ -1,7 +1,6 @@
 #include "pipeline/track/shape_pixels.hpp"
 
 #include <algorithm>
-#include <numeric>
 
 namespace kinectlab {
 namespace {
@@ -13,26 +12,48 @@ constexpr std::size_t kMostPixels = 32768;
 void ShapePixels::gather(
     const DisparityImage& image, const Pinhole& camera, std::span<const std::uint32_t> pixels
 ) {
-    for (auto* field : {&x, &y, &s})
-        field->clear();
-    pixel.clear();
     const std::size_t stride = (pixels.size() + kMostPixels - 1) / kMostPixels;
     const auto width = static_cast<std::uint32_t>(camera.width);
     const double per_fx = 1.0 / camera.fx, per_fy = 1.0 / camera.fy;
+    for (auto* field : {&x, &y, &s})
+        field->resize(pixels.size() + kFitLanes);
+    pixel.resize(pixels.size());
+    // Neighbours in the list share a row, so that few divisions find it.
+    std::uint32_t row_begin = 0, row_end = 0;
+    const float* readings = nullptr;
+    float ray_y = 0.0F;
+    double sum_x = 0.0, sum_y = 0.0, sum_s = 0.0;
+    offered = 0;
     for (std::size_t k = 0; k < pixels.size(); k += stride) {
-        const float steps = image.at(pixels[k]);
+        const std::uint32_t at = pixels[k];
+        if (at < row_begin || at >= row_end) {
+            const std::uint32_t row = at / width;
+            row_begin = row * width;
+            row_end = row_begin + width;
+            readings = image.row(static_cast<int>(row));
+            ray_y = static_cast<float>((row - camera.cy) * per_fy);
+        }
+        const float steps = readings[at - row_begin];
         if (steps == 0.0F) continue;
-        x.push_back(static_cast<float>((pixels[k] % width - camera.cx) * per_fx));
-        y.push_back(static_cast<float>((pixels[k] / width - camera.cy) * per_fy));
-        s.push_back(steps);
-        pixel.push_back(pixels[k]);
+        x[offered] = static_cast<float>((at - row_begin - camera.cx) * per_fx);
+        y[offered] = ray_y;
+        s[offered] = steps;
+        pixel[offered] = at;
+        sum_x += x[offered];
+        sum_y += ray_y;
+        sum_s += steps;
+        ++offered;
     }
-    offered = s.size();
-    const double n = static_cast<double>(std::max<std::size_t>(1, offered));
-    mean_x = std::accumulate(x.begin(), x.end(), 0.0) / n;
-    mean_y = std::accumulate(y.begin(), y.end(), 0.0) / n;
-    mean_s = std::accumulate(s.begin(), s.end(), 0.0) / n;
+    const auto n = static_cast<double>(std::max<std::size_t>(1, offered));
+    mean_x = sum_x / n, mean_y = sum_y / n, mean_s = sum_s / n;
     const std::size_t padded = (offered + kFitLanes - 1) / kFitLanes * kFitLanes;
+    pixel.resize(offered);
+    for (auto* field : {&x, &y, &s})
+        std::fill(
+            field->begin() + static_cast<std::ptrdiff_t>(offered),
+            field->begin() + static_cast<std::ptrdiff_t>(padded),
+            0.0F
+        );
     for (auto* field : {&x, &y, &s, &used, &weight, &residual, &height})
         field->resize(padded, 0.0F);
     for (auto& field : slope)
