@@ -36,11 +36,18 @@ double CorrelatedNoise::inflation(const ShapePixels& pixels, double sigma, doubl
         0.0
     );
     double squares = 0.0, weights = 0.0;
+    std::uint32_t row_begin = 0, row_end = 0;  // neighbours in the list share a row
+    std::size_t row_blocks = 0;
     for (std::size_t i = 0; i < pixels.offered; ++i) {
         const double weight = pixels.weight[i];
         if (weight <= 0.0) continue;
-        const std::size_t block =
-            pixels.pixel[i] / width / kBlock * columns + pixels.pixel[i] % width / kBlock;
+        const std::uint32_t pixel = pixels.pixel[i];
+        if (pixel < row_begin || pixel >= row_end) {
+            row_begin = pixel / width * width;
+            row_end = row_begin + width;
+            row_blocks = pixel / width / kBlock * columns;
+        }
+        const std::size_t block = row_blocks + (pixel - row_begin) / kBlock;
         const double residual = pixels.residual[i];
         const double error = weight * residual;
         sum_[block] += error;

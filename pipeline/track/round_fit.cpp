@@ -17,6 +17,7 @@ constexpr double kRimAtFirst = 0.7;  // px inside the outline: what is farther o
 constexpr double kMinRim = 0.02;     // px
 constexpr double kRoughRim = 2.0;    // times σ²: the sensor's rims are worse than its faces
 constexpr double kRimSigmas = 3.0;   // of the shape across the rays, once it is known
+constexpr double kRoughlySettled = 0.3, kSettled = 0.03;  // standard deviations
 constexpr int kStepsToCompare = 8;
 constexpr double kEndGateSigmas = 3.0;
 constexpr double kEndMarginPx = 1.5;
@@ -36,6 +37,7 @@ RoundWay first_way(
     way.sigma = pixels.mean_sigma(scale);
     way.gate_steps = kFirstGateSigmas * way.sigma;
     way.rim_m = kRimAtFirst * px_at(guess, camera);
+    way.settled = kRoughlySettled;
     return way;
 }
 
@@ -128,6 +130,7 @@ std::optional<ShapeFit> fit_round(
     }
     RoundEquations sums;
     if (!settle(pixels, scale, fit.shape, way, sums)) return std::nullopt;
+    way.settled = kSettled;
     way.most_steps = kMostFitSteps;
     way.may_stop_short = false;
     linearise_shape(pixels, scale, fit.shape, way);

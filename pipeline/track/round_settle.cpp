@@ -15,7 +15,6 @@ constexpr int kChoices = 2;           // of the pixels at the last gate
 constexpr double kLongestStep = 0.3;  // of the radius; rad for angles
 constexpr double kShortestCone_m = 0.05;
 constexpr double kMaxSize_m = 2.0, kMaxAngle = 1.4, kMinAngle = 0.03;
-constexpr double kSettled = 3e-2;   // of a standard deviation: a smaller step changes nothing
 constexpr double kShrinking = 0.7;  // from step to step; else it swings about the solution
 constexpr double kStillMoving = 1.0;
 
@@ -32,20 +31,21 @@ Eigen::Matrix3d frame_of(const Shape& shape) {
     return R_cam_shape;
 }
 
-RoundEquations equations(const ShapePixels& pixels, const RoundWay& way) {
-    RoundEquations sums;
-    const NormalSums found = pixels.sums();
-    std::size_t k = 0;
-    for (int row = 0; row < 6; ++row)
-        for (int column = 0; column <= row; ++column, ++k) {
-            const bool both = way.active[static_cast<std::size_t>(row)] &&
-                              way.active[static_cast<std::size_t>(column)];
-            if (both)
-                sums.information(row, column) = sums.information(column, row) = found.products[k];
+RoundEquations equations(ShapePixels& pixels, const RoundWay& way) {
+    const NormalSums found = sum_equations(pixels.round(), way.active);
+    RoundEquations sums;  // of what is not active the equation is "no change"
+    std::array<int, 6> unknown{};
+    std::size_t count = 0, k = 0;
+    for (int i = 0; i < 6; ++i)
+        if (way.active[static_cast<std::size_t>(i)]) unknown[count++] = i;
+    for (std::size_t row = 0; row < count; ++row) {
+        const int r = unknown[row];
+        sums.gradient[r] = found.gradient[row];
+        for (std::size_t column = 0; column <= row; ++column, ++k) {
+            const int c = unknown[column];
+            sums.information(r, c) = sums.information(c, r) = found.products[k];
         }
-    for (int row = 0; row < 6; ++row)
-        if (way.active[static_cast<std::size_t>(row)])
-            sums.gradient[row] = found.gradient[static_cast<std::size_t>(row)];
+    }
     sums.pixels = found.weights;
     return sums;
 }
@@ -142,7 +142,7 @@ bool settle(
         way.R_cam_shape = frame_of(shape);
         if (!has_sound_size(shape)) return false;
         const bool last = way.gate_steps <= last_gate;
-        if (last && length < kSettled) return true;
+        if (last && length < way.settled) return true;
         // Pixels at the rim that come and go would keep the fit from settling.
         if (last && ++at_last_gate >= kChoices) way.choose = false;
         way.gate_steps = std::max(last_gate, 0.5 * way.gate_steps);

@@ -17,6 +17,7 @@ constexpr SearchEffort kSceneGuesses{256, 6};
 constexpr SearchEffort kRivals{48, 2};
 constexpr std::size_t kComparePixels = 512;
 constexpr double kSimplerCost = 1.15;     // what a simpler kind may be worse and still explain it
+constexpr double kHopeless = 2.0;         // times that: another guess will not do either
 constexpr double kMinInlierShare = 0.35;  // of the segment: lids, strings and hands belong to it
 constexpr double kPlentyOfInliers = 0.7;  // no further guess is tried
 constexpr double kMaxRmsSigmas = 3.0;
@@ -67,20 +68,22 @@ bool SegmentShapes::is_sound(const ShapeFit& fit, const ShapeTarget& target) con
            fit.size_u <= kMaxSizeShareU * fit.shape.size;
 }
 
-double SegmentShapes::best_cost(const DisparityImage& image, ShapeKind kind) {
+double SegmentShapes::best_cost(const DisparityImage& image, ShapeKind kind, double hopeless) {
     SizeLimits limits;
     if (kind == ShapeKind::cone) limits = {{}, kLeastConeAngle, kMostConeAngle};
     search_shape(kind, points_, limits, kRough, kRivals, guesses_);
-    return rival_.least_misfit(image, compared_, guesses_);
+    return rival_.least_misfit(image, compared_, guesses_, hopeless);
 }
 
 bool SegmentShapes::is_its_kind(const DisparityImage& image, const ShapeFit& fit) {
     for (const auto kind :
          {ShapeKind::plane, ShapeKind::sphere, ShapeKind::cylinder, ShapeKind::cone}) {
         if (kind == fit.shape.kind) continue;
-        const double cost = best_cost(image, kind);
         const bool simpler = kind < fit.shape.kind;
-        if (simpler && cost <= kSimplerCost * fit.cost + 0.01) return false;
+        // Guesses of simpler kinds lead to the same place; those of richer ones may lead astray.
+        const double as_good = kSimplerCost * fit.cost + 0.01;
+        const double cost = best_cost(image, kind, simpler ? kHopeless * as_good : 1.0);
+        if (simpler && cost <= as_good) return false;
         if (!simpler && fit.cost > kSimplerCost * cost + 0.01) return false;
     }
     return true;

@@ -46,7 +46,7 @@ private:
     );
     [[nodiscard]] bool is_sound(const ShapeFit& fit, const ShapeTarget& target) const;
     [[nodiscard]] bool is_its_kind(const DisparityImage& image, const ShapeFit& fit);
-    [[nodiscard]] double best_cost(const DisparityImage& image, ShapeKind kind);
+    [[nodiscard]] double best_cost(const DisparityImage& image, ShapeKind kind, double hopeless);
     void near_pixels(const DisparityImage& image, const Shape& shape);
 
     RgbdCamera camera_;

@@ -35,7 +35,8 @@ std::optional<ShapeFit> ShapeFitter::fit(
 double ShapeFitter::least_misfit(
     const DisparityImage& image,
     std::span<const std::uint32_t> pixels,
-    std::span<const ShapeCandidate> guesses
+    std::span<const ShapeCandidate> guesses,
+    double hopeless
 ) {
     if (pixels.empty() || guesses.empty()) return 1.0;
     pixels_.gather(image, camera_, pixels);
@@ -46,6 +47,7 @@ double ShapeFitter::least_misfit(
         const double cost = plane ? misfit_plane(pixels_, scale_, guess.shape)
                                   : misfit_round(pixels_, camera_, scale_, guess.shape);
         least = std::min(least, cost);
+        if (cost > hopeless) break;
     }
     return least;
 }

@@ -39,7 +39,8 @@ public:
     [[nodiscard]] double least_misfit(
         const DisparityImage& image,
         std::span<const std::uint32_t> pixels,
-        std::span<const ShapeCandidate> guesses
+        std::span<const ShapeCandidate> guesses,
+        double hopeless
     );
 
 private:

@@ -30,28 +30,27 @@ KINECTLAB_INLINE Float8 sqrt8(const Float8& value) {
     return root;
 }
 
-/// Where the rays meet the shape: p = d/w, w = 1/Z. The root's square is
+/// Where the rays meet the shape: p = d z, 1/Z = w = far/near. The root's square is
 /// ρ A - (X3² + κ (X1² + X2²)) with X = o x d by Lagrange's identity, which loses no digits in
 /// single precision.
 struct Hit {
-    Float8 w, root2, root;
-    Float8 q1, q2, q3;
+    Three d;
+    Float8 root2, root;
+    Float8 far, near;
 };
 
 KINECTLAB_INLINE Hit meet8(const RoundOptics& at, const Float8& x, const Float8& y) {
-    const Three d = linear(at.direction, x, y);
+    Hit hit;
+    hit.d = linear(at.direction, x, y);
+    const Three& d = hit.d;
     const Three m = linear(at.moment, x, y);
     const Float8 a = d.a * d.a + d.b * d.b + at.kappa * d.c * d.c;
     const Float8 b = -(at.o1 * d.a + at.o2 * d.b + at.kappa * at.o3 * d.c);
-    Hit hit;
     hit.root2 = at.rho * a - (m.c * m.c + at.kappa * (m.a * m.a + m.b * m.b));
     hit.root = sqrt8(choose8(hit.root2 > 1e-12F, hit.root2, all8(1e-12F)));
     const Mask8 front = b > 0.0F;
-    hit.w = choose8(front, b + hit.root, a) / choose8(front, all8(at.c), b - hit.root);
-    const Float8 z = 1.0F / hit.w;
-    hit.q1 = at.o1 + z * d.a;
-    hit.q2 = at.o2 + z * d.b;
-    hit.q3 = at.o3 + z * d.c;
+    hit.far = choose8(front, b + hit.root, a);
+    hit.near = choose8(front, all8(at.c), b - hit.root);
     return hit;
 }
 
@@ -62,8 +61,10 @@ KINECTLAB_HOT_LOOP void choose(
     const RoundOptics at = optics;
     for (std::size_t i = 0; i < pixels.size; i += kFitLanes) {
         const Hit hit = meet8(at, load8(pixels.x + i), load8(pixels.y + i));
-        const Mask8 met = (hit.root2 > 0.0F) & (hit.w > 0.0F) & (hit.q3 >= at.least_height) &
-                          (hit.q3 >= low) & (hit.q3 <= high) & (load8(pixels.s + i) > 0.0F);
+        const Float8 z = hit.near / hit.far;
+        const Float8 height = at.o3 + z * hit.d.c;
+        const Mask8 met = (hit.root2 > 0.0F) & (z > 0.0F) & (height >= at.least_height) &
+                          (height >= low) & (height <= high) & (load8(pixels.s + i) > 0.0F);
         store8(pixels.used + i, keep8(all8(1.0F), met));
     }
 }
@@ -78,23 +79,28 @@ KINECTLAB_HOT_LOOP void linearise(
     const Float8 none = all8(__builtin_nanf(""));
     for (std::size_t i = 0; i < pixels.size; i += kFitLanes) {
         const Hit hit = meet8(at, load8(pixels.x + i), load8(pixels.y + i));
-        const Mask8 met = (hit.root2 > 1e-12F) & (hit.w > 0.0F) & (hit.q3 >= at.least_height);
-        const Float8 residual = load8(pixels.s + i) - hit.w * at.per_step;
+        // One division for w, z and 1/root: it takes as long as all the rest.
+        const Float8 product = hit.far * hit.near;
+        const Float8 inverse = 1.0F / (product * hit.root);
+        const Float8 per_root = inverse * product, per_product = inverse * hit.root;
+        const Float8 w = hit.far * hit.far * per_product;
+        const Float8 z = hit.near * hit.near * per_product;
+        const Float8 q1 = at.o1 + z * hit.d.a, q2 = at.o2 + z * hit.d.b, q3 = at.o3 + z * hit.d.c;
+        const Mask8 met = (hit.root2 > 1e-12F) & (w > 0.0F) & (q3 >= at.least_height);
+        const Float8 residual = load8(pixels.s + i) - w * at.per_step;
         const Float8 tukey = 1.0F - residual * residual * per_gate2;
         const Mask8 counts = met & (tukey > 0.0F);
         store8(pixels.residual + i, choose8(met, residual, none));
         store8(pixels.weight + i, keep8(load8(pixels.used + i) * tukey * tukey, counts));
-        store8(pixels.height + i, choose8(met, hit.q3, none));
-        const Float8 scale = keep8(at.per_step * hit.w * hit.w / hit.root, met);
-        const Float8 bent = (at.kappa - 1.0F) * hit.q3 * scale;
-        store8(pixels.slope[0] + i, keep8(scale * hit.q1, met));
-        store8(pixels.slope[1] + i, keep8(scale * hit.q2, met));
-        store8(pixels.slope[2] + i, keep8(scale * at.kappa * hit.q3, met));
-        store8(pixels.slope[3] + i, keep8(bent * hit.q2, met));
-        store8(pixels.slope[4] + i, keep8(-bent * hit.q1, met));
-        store8(
-            pixels.slope[5] + i, keep8(scale * (at.by_size + at.by_size3 * hit.q3 * hit.q3), met)
-        );
+        store8(pixels.height + i, choose8(met, q3, none));
+        const Float8 scale = keep8(at.per_step * w * w * per_root, met);
+        const Float8 bent = (at.kappa - 1.0F) * q3 * scale;
+        store8(pixels.slope[0] + i, keep8(scale * q1, met));
+        store8(pixels.slope[1] + i, keep8(scale * q2, met));
+        store8(pixels.slope[2] + i, keep8(scale * at.kappa * q3, met));
+        store8(pixels.slope[3] + i, keep8(bent * q2, met));
+        store8(pixels.slope[4] + i, keep8(-bent * q1, met));
+        store8(pixels.slope[5] + i, keep8(scale * (at.by_size + at.by_size3 * q3 * q3), met));
     }
 }
 
@@ -107,7 +113,8 @@ KINECTLAB_INLINE double total(const Float8& value) {
 
 constexpr std::size_t kChunk = 512;  // single precision sums this many at most
 
-KINECTLAB_HOT_LOOP void sum_all(
+template <std::size_t N>
+KINECTLAB_INLINE void sum_chunks(
     const std::array<const float*, 6>& slope,
     const float* weight,
     const float* residual,
@@ -116,31 +123,45 @@ KINECTLAB_HOT_LOOP void sum_all(
 ) {
     for (std::size_t begin = 0; begin < size; begin += kChunk) {
         const std::size_t end = begin + kChunk < size ? begin + kChunk : size;
-        std::array<Float8, 21> products{};
-        std::array<Float8, 6> gradient{};
+        std::array<Float8, N*(N + 1) / 2> products{};
+        std::array<Float8, N> gradient{};
         Float8 weights{};
         for (std::size_t i = begin; i < end; i += kFitLanes) {
             const Float8 w = load8(weight + i);
             const Mask8 counts = w > 0.0F;
             const Float8 r = keep8(load8(residual + i), counts);
-            std::array<Float8, 6> s;
-            for (std::size_t k = 0; k < 6; ++k)
+            std::array<Float8, N> s;
+            for (std::size_t k = 0; k < N; ++k)
                 s[k] = load8(slope[k] + i);
             weights += w;
             std::size_t k = 0;
-            for (std::size_t row = 0; row < 6; ++row) {
+            for (std::size_t row = 0; row < N; ++row) {
                 const Float8 weighted = w * s[row];
                 gradient[row] += weighted * r;
                 for (std::size_t column = 0; column <= row; ++column, ++k)
                     products[k] += weighted * s[column];
             }
         }
-        for (std::size_t k = 0; k < 21; ++k)
+        for (std::size_t k = 0; k < products.size(); ++k)
             sums.products[k] += total(products[k]);
-        for (std::size_t k = 0; k < 6; ++k)
+        for (std::size_t k = 0; k < N; ++k)
             sums.gradient[k] += total(gradient[k]);
         sums.weights += total(weights);
     }
+}
+
+KINECTLAB_HOT_LOOP void sum_all(
+    const std::array<const float*, 6>& slope,
+    std::size_t slopes,
+    const float* weight,
+    const float* residual,
+    std::size_t size,
+    NormalSums& sums
+) {
+    if (slopes <= 3) return sum_chunks<3>(slope, weight, residual, size, sums);
+    if (slopes == 4) return sum_chunks<4>(slope, weight, residual, size, sums);
+    if (slopes == 5) return sum_chunks<5>(slope, weight, residual, size, sums);
+    sum_chunks<6>(slope, weight, residual, size, sums);
 }
 
 KINECTLAB_HOT_LOOP void linearise_flat(
@@ -215,14 +236,15 @@ void linearise_round(const RoundPixels& pixels, const RoundOptics& optics, doubl
     linearise(pixels, optics, static_cast<float>(1.0 / (gate_steps * gate_steps)));
 }
 
-NormalSums sum_equations(
-    const std::array<const float*, 6>& slope,
-    const float* weight,
-    const float* residual,
-    std::size_t size
-) {
+NormalSums sum_equations(const RoundPixels& pixels, const std::array<bool, 6>& active) {
+    std::array<const float*, 6> slope{};
+    std::size_t slopes = 0;
+    for (std::size_t k = 0; k < 6; ++k)
+        if (active[k]) slope[slopes++] = pixels.slope[k];
+    for (std::size_t k = slopes; k < 6; ++k)
+        slope[k] = pixels.slope[0];  // read where fewer than the loops take are active
     NormalSums sums;
-    sum_all(slope, weight, residual, size, sums);
+    sum_all(slope, slopes, pixels.weight, pixels.residual, pixels.size, sums);
     return sums;
 }
 

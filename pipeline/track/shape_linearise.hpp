@@ -40,16 +40,14 @@ void choose_pixels(const RoundPixels& pixels, const RoundOptics& optics, double 
 /// Residual in steps, Tukey's weight of used pixels, height and slopes.
 void linearise_round(const RoundPixels& pixels, const RoundOptics& optics, double gate_steps);
 
+/// Over the active slopes only, in their order.
 struct NormalSums {
     std::array<double, 21> products{};  ///< Σ weight·slope·slope, the lower triangle row by row
     std::array<double, 6> gradient{};   ///< Σ weight·slope·residual
     double weights = 0.0;
 };
 [[nodiscard]] NormalSums sum_equations(
-    const std::array<const float*, 6>& slope,
-    const float* weight,
-    const float* residual,
-    std::size_t size
+    const RoundPixels& pixels, const std::array<bool, 6>& active
 );
 
 struct PlanePixels {

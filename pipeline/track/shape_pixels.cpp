@@ -90,18 +90,4 @@ PlanePixels ShapePixels::flat() {
     return {x.size(), x.data(), y.data(), s.data(), weight.data(), residual.data()};
 }
 
-NormalSums ShapePixels::sums() const {
-    return sum_equations(
-        {slope[0].data(),
-         slope[1].data(),
-         slope[2].data(),
-         slope[3].data(),
-         slope[4].data(),
-         slope[5].data()},
-        weight.data(),
-        residual.data(),
-        x.size()
-    );
-}
-
 }  // namespace kinectlab

@@ -33,7 +33,6 @@ struct ShapePixels {
 
     [[nodiscard]] RoundPixels round();
     [[nodiscard]] PlanePixels flat();
-    [[nodiscard]] NormalSums sums() const;
 };
 
 }  // namespace kinectlab
