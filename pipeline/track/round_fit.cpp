@@ -133,7 +133,7 @@ std::optional<ShapeFit> fit_round(
     way.settled = kSettled;
     way.most_steps = kMostFitSteps;
     way.may_stop_short = false;
-    linearise_shape(pixels, scale, fit.shape, way);
+    sums = linearise_shape(pixels, scale, fit.shape, way);
     const bool long_one = guess.kind != ShapeKind::sphere;
     if (long_one) bound_ends(pixels, camera.fx, fit.shape, way);
     // The rim is known as well as the shape's place.

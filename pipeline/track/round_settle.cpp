@@ -31,13 +31,12 @@ Eigen::Matrix3d frame_of(const Shape& shape) {
     return R_cam_shape;
 }
 
-RoundEquations equations(ShapePixels& pixels, const RoundWay& way) {
-    const NormalSums found = sum_equations(pixels.round(), way.active);
-    RoundEquations sums;  // of what is not active the equation is "no change"
+RoundEquations equations(const NormalSums& found, const RoundUnknowns& active) {
+    RoundEquations sums;  // of what is known the equation is "no change"
     std::array<int, 6> unknown{};
     std::size_t count = 0, k = 0;
     for (int i = 0; i < 6; ++i)
-        if (way.active[static_cast<std::size_t>(i)]) unknown[count++] = i;
+        if (active[static_cast<std::size_t>(i)]) unknown[count++] = i;
     for (std::size_t row = 0; row < count; ++row) {
         const int r = unknown[row];
         sums.gradient[r] = found.gradient[row];
@@ -77,7 +76,7 @@ bool has_sound_size(const Shape& shape) {
 
 }  // namespace
 
-std::array<bool, 6> unknowns_of(ShapeKind kind, bool fixed_size) {
+RoundUnknowns unknowns_of(ShapeKind kind, bool fixed_size) {
     switch (kind) {
         case ShapeKind::sphere:
             return {true, true, true, false, false, !fixed_size};
@@ -105,12 +104,13 @@ void choose_shape_pixels(
     choose_pixels(pixels.round(), optics, way.low - deeper, way.high - deeper);
 }
 
-void linearise_shape(
+RoundEquations linearise_shape(
     ShapePixels& pixels, const DisparityScale& scale, const Shape& shape, const RoundWay& way
 ) {
     const RoundOptics optics =
         round_optics(shape, shape, way.R_cam_shape, 1.0 / scale.inverse_depth_step);
-    linearise_round(pixels.round(), optics, way.gate_steps);
+    const NormalSums found = linearise_round(pixels.round(), optics, way.gate_steps, way.active);
+    return equations(found, way.active);
 }
 
 bool settle(
@@ -127,8 +127,7 @@ bool settle(
     way.R_cam_shape = frame_of(shape);
     for (int i = 0; i < way.most_steps; ++i) {
         if (way.choose) choose_shape_pixels(pixels, scale, shape, way);
-        linearise_shape(pixels, scale, shape, way);
-        sums = equations(pixels, way);
+        sums = linearise_shape(pixels, scale, shape, way);
         if (sums.pixels < 0.5 * kFewestFitPixels) return false;
         const auto solver = sums.information.ldlt();
         if (solver.info() != Eigen::Success || !solver.isPositive()) return false;

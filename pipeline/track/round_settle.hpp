@@ -1,7 +1,5 @@
 #pragma once
 
-#include <array>
-
 #include "pipeline/core/disparity.hpp"
 #include "pipeline/core/track_sample.hpp"
 #include "pipeline/track/fitted_shape.hpp"
@@ -36,15 +34,15 @@ struct RoundEquations {
 };
 
 /// Which unknowns a kind has.
-[[nodiscard]] std::array<bool, 6> unknowns_of(ShapeKind kind, bool fixed_size);
+[[nodiscard]] RoundUnknowns unknowns_of(ShapeKind kind, bool fixed_size);
 
 /// used = 1 for the pixels that surely show the shape: inside its outline and between its ends.
 void choose_shape_pixels(
     ShapePixels& pixels, const DisparityScale& scale, const Shape& shape, const RoundWay& way
 );
 
-/// Residual, weight, height and slopes of every pixel.
-void linearise_shape(
+/// Residual, weight and height of every pixel; the next step's equations.
+RoundEquations linearise_shape(
     ShapePixels& pixels, const DisparityScale& scale, const Shape& shape, const RoundWay& way
 );
 

@@ -69,15 +69,25 @@ KINECTLAB_HOT_LOOP void choose(
     }
 }
 
+constexpr std::size_t kChunk = 512;  // single precision sums this many at most
+
+/// Of one chunk's pixels, by t1, t2, t3, ω1, ω2 and the size; small enough for the nearest cache.
+struct Slopes {
+    alignas(32) std::array<std::array<float, kChunk>, 6> by;
+};
+
 /// ∂w/∂t = w² (q1, q2, κ q3)/root, ∂w/∂ω = w² (κ - 1) q3 (q2, -q1)/root and ∂w/∂size likewise from
 /// -∂F/∂size: all from F = 0 by implicit differentiation, where ∂(F w²)/∂w = 2 root.
-KINECTLAB_HOT_LOOP void linearise(
-    const RoundPixels& all, const RoundOptics& optics, float per_gate2
+KINECTLAB_INLINE void linearise_chunk(
+    const RoundPixels& pixels,
+    const RoundOptics& at,
+    float per_gate2,
+    std::size_t begin,
+    std::size_t end,
+    Slopes& slopes
 ) {
-    const RoundPixels pixels = all;  // copies, which no store can change
-    const RoundOptics at = optics;
     const Float8 none = all8(__builtin_nanf(""));
-    for (std::size_t i = 0; i < pixels.size; i += kFitLanes) {
+    for (std::size_t i = begin; i < end; i += kFitLanes) {
         const Hit hit = meet8(at, load8(pixels.x + i), load8(pixels.y + i));
         // One division for w, z and 1/root: it takes as long as all the rest.
         const Float8 product = hit.far * hit.near;
@@ -95,12 +105,14 @@ KINECTLAB_HOT_LOOP void linearise(
         store8(pixels.height + i, choose8(met, q3, none));
         const Float8 scale = keep8(at.per_step * w * w * per_root, met);
         const Float8 bent = (at.kappa - 1.0F) * q3 * scale;
-        store8(pixels.slope[0] + i, keep8(scale * q1, met));
-        store8(pixels.slope[1] + i, keep8(scale * q2, met));
-        store8(pixels.slope[2] + i, keep8(scale * at.kappa * q3, met));
-        store8(pixels.slope[3] + i, keep8(bent * q2, met));
-        store8(pixels.slope[4] + i, keep8(-bent * q1, met));
-        store8(pixels.slope[5] + i, keep8(scale * (at.by_size + at.by_size3 * q3 * q3), met));
+        const Float8 by_size = scale * (at.by_size + at.by_size3 * q3 * q3);
+        const std::size_t k = i - begin;
+        store8(slopes.by[0].data() + k, keep8(scale * q1, met));
+        store8(slopes.by[1].data() + k, keep8(scale * q2, met));
+        store8(slopes.by[2].data() + k, keep8(scale * at.kappa * q3, met));
+        store8(slopes.by[3].data() + k, keep8(bent * q2, met));
+        store8(slopes.by[4].data() + k, keep8(-bent * q1, met));
+        store8(slopes.by[5].data() + k, keep8(by_size, met));
     }
 }
 
@@ -111,57 +123,65 @@ KINECTLAB_INLINE double total(const Float8& value) {
     return sum;
 }
 
-constexpr std::size_t kChunk = 512;  // single precision sums this many at most
-
+/// Over the first N of the slopes.
 template <std::size_t N>
-KINECTLAB_INLINE void sum_chunks(
+KINECTLAB_INLINE void sum_chunk(
     const std::array<const float*, 6>& slope,
     const float* weight,
     const float* residual,
     std::size_t size,
     NormalSums& sums
 ) {
-    for (std::size_t begin = 0; begin < size; begin += kChunk) {
-        const std::size_t end = begin + kChunk < size ? begin + kChunk : size;
-        std::array<Float8, N*(N + 1) / 2> products{};
-        std::array<Float8, N> gradient{};
-        Float8 weights{};
-        for (std::size_t i = begin; i < end; i += kFitLanes) {
-            const Float8 w = load8(weight + i);
-            const Mask8 counts = w > 0.0F;
-            const Float8 r = keep8(load8(residual + i), counts);
-            std::array<Float8, N> s;
-            for (std::size_t k = 0; k < N; ++k)
-                s[k] = load8(slope[k] + i);
-            weights += w;
-            std::size_t k = 0;
-            for (std::size_t row = 0; row < N; ++row) {
-                const Float8 weighted = w * s[row];
-                gradient[row] += weighted * r;
-                for (std::size_t column = 0; column <= row; ++column, ++k)
-                    products[k] += weighted * s[column];
-            }
-        }
-        for (std::size_t k = 0; k < products.size(); ++k)
-            sums.products[k] += total(products[k]);
+    std::array<Float8, N*(N + 1) / 2> products{};
+    std::array<Float8, N> gradient{};
+    Float8 weights{};
+    for (std::size_t i = 0; i < size; i += kFitLanes) {
+        const Float8 w = load8(weight + i);
+        const Mask8 counts = w > 0.0F;
+        const Float8 r = keep8(load8(residual + i), counts);
+        std::array<Float8, N> s;
         for (std::size_t k = 0; k < N; ++k)
-            sums.gradient[k] += total(gradient[k]);
-        sums.weights += total(weights);
+            s[k] = load8(slope[k] + i);
+        weights += w;
+        std::size_t k = 0;
+        for (std::size_t row = 0; row < N; ++row) {
+            const Float8 weighted = w * s[row];
+            gradient[row] += weighted * r;
+            for (std::size_t column = 0; column <= row; ++column, ++k)
+                products[k] += weighted * s[column];
+        }
     }
+    for (std::size_t k = 0; k < products.size(); ++k)
+        sums.products[k] += total(products[k]);
+    for (std::size_t k = 0; k < N; ++k)
+        sums.gradient[k] += total(gradient[k]);
+    sums.weights += total(weights);
 }
 
-KINECTLAB_HOT_LOOP void sum_all(
-    const std::array<const float*, 6>& slope,
-    std::size_t slopes,
-    const float* weight,
-    const float* residual,
-    std::size_t size,
+KINECTLAB_HOT_LOOP void linearise(
+    const RoundPixels& all,
+    const RoundOptics& optics,
+    float per_gate2,
+    const RoundUnknowns& active,
     NormalSums& sums
 ) {
-    if (slopes <= 3) return sum_chunks<3>(slope, weight, residual, size, sums);
-    if (slopes == 4) return sum_chunks<4>(slope, weight, residual, size, sums);
-    if (slopes == 5) return sum_chunks<5>(slope, weight, residual, size, sums);
-    sum_chunks<6>(slope, weight, residual, size, sums);
+    const RoundPixels pixels = all;  // copies, which no store can change
+    const RoundOptics at = optics;
+    Slopes slopes;
+    std::array<const float*, 6> slope{};
+    std::size_t unknowns = 0;
+    for (std::size_t k = 0; k < 6; ++k)
+        if (active[k]) slope[unknowns++] = slopes.by[k].data();
+    for (std::size_t begin = 0; begin < pixels.size; begin += kChunk) {
+        const std::size_t end = begin + kChunk < pixels.size ? begin + kChunk : pixels.size;
+        linearise_chunk(pixels, at, per_gate2, begin, end, slopes);
+        const float *weight = pixels.weight + begin, *residual = pixels.residual + begin;
+        const std::size_t size = end - begin;
+        if (unknowns == 6) sum_chunk<6>(slope, weight, residual, size, sums);
+        if (unknowns == 5) sum_chunk<5>(slope, weight, residual, size, sums);
+        if (unknowns == 4) sum_chunk<4>(slope, weight, residual, size, sums);
+        if (unknowns == 3) sum_chunk<3>(slope, weight, residual, size, sums);
+    }
 }
 
 KINECTLAB_HOT_LOOP void linearise_flat(
@@ -232,19 +252,14 @@ void choose_pixels(const RoundPixels& pixels, const RoundOptics& optics, double 
     choose(pixels, optics, static_cast<float>(low), static_cast<float>(high));
 }
 
-void linearise_round(const RoundPixels& pixels, const RoundOptics& optics, double gate_steps) {
-    linearise(pixels, optics, static_cast<float>(1.0 / (gate_steps * gate_steps)));
-}
-
-NormalSums sum_equations(const RoundPixels& pixels, const std::array<bool, 6>& active) {
-    std::array<const float*, 6> slope{};
-    std::size_t slopes = 0;
-    for (std::size_t k = 0; k < 6; ++k)
-        if (active[k]) slope[slopes++] = pixels.slope[k];
-    for (std::size_t k = slopes; k < 6; ++k)
-        slope[k] = pixels.slope[0];  // read where fewer than the loops take are active
+NormalSums linearise_round(
+    const RoundPixels& pixels,
+    const RoundOptics& optics,
+    double gate_steps,
+    const RoundUnknowns& active
+) {
     NormalSums sums;
-    sum_all(slope, slopes, pixels.weight, pixels.residual, pixels.size, sums);
+    linearise(pixels, optics, static_cast<float>(1.0 / (gate_steps * gate_steps)), active, sums);
     return sums;
 }
 

@@ -56,8 +56,6 @@ void ShapePixels::gather(
         );
     for (auto* field : {&x, &y, &s, &used, &weight, &residual, &height})
         field->resize(padded, 0.0F);
-    for (auto& field : slope)
-        field.resize(padded, 0.0F);
 }
 
 double ShapePixels::mean_sigma(const DisparityScale& scale) const {
@@ -77,13 +75,7 @@ RoundPixels ShapePixels::round() {
         used.data(),
         weight.data(),
         residual.data(),
-        height.data(),
-        {slope[0].data(),
-         slope[1].data(),
-         slope[2].data(),
-         slope[3].data(),
-         slope[4].data(),
-         slope[5].data()}};
+        height.data()};
 }
 
 PlanePixels ShapePixels::flat() {

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -19,7 +18,6 @@ struct ShapePixels {
     std::vector<float> x, y, s;  ///< ray and disparity
     std::vector<std::uint32_t> pixel;
     std::vector<float> used, weight, residual, height;  ///< see RoundPixels
-    std::array<std::vector<float>, 6> slope;
 
     /// Takes those of the pixels that have a reading; of very many every 2nd, 3rd, …
     void gather(
