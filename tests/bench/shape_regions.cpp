@@ -78,12 +78,7 @@ void measure(const Region& region, Figures& figures) {
         if (region.kind == ShapeKind::sphere) {
             found = find_sphere(sphere, room.camera, frame, pixels);
         } else {
-            const auto width = static_cast<std::uint32_t>(room.camera.depth.width);
-            image.load(
-                frame.depth,
-                static_cast<int>(pixels.front() / width) - 8,
-                static_cast<int>(pixels.back() / width) + 8
-            );
+            image.load_around(frame.depth, pixels);
             if (const auto fit = shapes.in_segment(image, pixels, target)) found = fit->shape;
         }
         ours.ms += 1e3 * (thread_seconds() - start);
