@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include <Eigen/Geometry>
 #include <Eigen/LU>
@@ -17,7 +18,7 @@ constexpr double kRimAtFirst = 0.7;  // px inside the outline: what is farther o
 constexpr double kMinRim = 0.02;     // px
 constexpr double kRoughRim = 2.0;    // times σ²: the sensor's rims are worse than its faces
 constexpr double kRimSigmas = 3.0;   // of the shape across the rays, once it is known
-constexpr double kRoughlySettled = 0.3, kSettled = 0.03;  // standard deviations
+constexpr double kRoughlySettled = 0.3, kSettled = 0.1;  // σ: the next is a tenth of it
 constexpr int kStepsToCompare = 8;
 constexpr double kEndGateSigmas = 3.0;
 constexpr double kEndMarginPx = 1.5;
@@ -65,32 +66,29 @@ double sideways_u(ShapeKind kind, const RoundWay& way, const RoundEquations& sum
     return std::sqrt(std::max(0.0, variance));
 }
 
-/// Whether the pixels nearest to the outline err no more than the others. They tell most of a size,
-/// but a real sensor's look aside a little, which shows where the surface is steep.
-bool rim_is_sound(
+/// Leaves out what is this near to the outline, or as much as before if the pixels there err more
+/// than the others. They tell most of a size, but a real sensor's look aside a little, which shows
+/// where the surface is steep. The pixels are linearised for this shape.
+void narrow_rim(
     ShapePixels& pixels,
     const DisparityScale& scale,
     const Shape& shape,
-    const RoundWay& narrow,
-    double wide_m
+    double rim_m,
+    RoundWay& way
 ) {
-    RoundWay wide = narrow;
-    wide.rim_m = wide_m;
-    choose_shape_pixels(pixels, scale, shape, wide);
-    const std::vector<float>& used = pixels.used;
-    // Those of the wide rim are marked by a height that is none.
-    for (std::size_t i = 0; i < pixels.offered; ++i)
-        if (used[i] != 0.0F) pixels.height[i] = std::nanf("");
-    choose_shape_pixels(pixels, scale, shape, narrow);
-    const double gate = kLastGateSigmas * narrow.sigma;
-    double squares = 0.0, count = 0.0;
-    for (std::size_t i = 0; i < pixels.offered; ++i) {
-        if (used[i] == 0.0F || std::isnan(pixels.height[i])) continue;
-        const double off = pixels.residual[i];
-        squares += std::abs(off) < gate ? off * off : gate * gate;
-        count += 1.0;
+    way.choose = true;
+    if (!(rim_m < way.rim_m)) {
+        way.rim_m = rim_m;
+        return;
     }
-    return squares <= kRoughRim * narrow.sigma * narrow.sigma * count;
+    choose_shape_pixels(pixels, scale, shape, way);
+    const double wide_m = std::exchange(way.rim_m, rim_m);
+    pixels.chosen_before.swap(pixels.used);
+    pixels.used.resize(pixels.x.size());
+    choose_shape_pixels(pixels, scale, shape, way);
+    const RimSums rim = sum_rim(pixels, kLastGateSigmas * way.sigma);
+    way.chosen = rim.squares <= kRoughRim * way.sigma * way.sigma * rim.pixels;
+    if (!way.chosen) way.rim_m = wide_m;
 }
 
 /// From the shape's own frame into the camera's. The sixth unknown makes place for the turn about
@@ -137,10 +135,8 @@ std::optional<ShapeFit> fit_round(
     const bool long_one = guess.kind != ShapeKind::sphere;
     if (long_one) bound_ends(pixels, camera.fx, fit.shape, way);
     // The rim is known as well as the shape's place.
-    const double wide = way.rim_m;
-    way.rim_m = std::max(kMinRim * px_m, kRimSigmas * sideways_u(guess.kind, way, sums));
-    way.choose = true;
-    if (way.rim_m < wide && !rim_is_sound(pixels, scale, fit.shape, way, wide)) way.rim_m = wide;
+    const double rim_m = std::max(kMinRim * px_m, kRimSigmas * sideways_u(guess.kind, way, sums));
+    narrow_rim(pixels, scale, fit.shape, rim_m, way);
     if (!settle(pixels, scale, fit.shape, way, sums)) return std::nullopt;
 
     const auto unknowns =

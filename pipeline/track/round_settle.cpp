@@ -126,7 +126,8 @@ bool settle(
     int at_last_gate = 0;
     way.R_cam_shape = frame_of(shape);
     for (int i = 0; i < way.most_steps; ++i) {
-        if (way.choose) choose_shape_pixels(pixels, scale, shape, way);
+        if (way.choose && !way.chosen) choose_shape_pixels(pixels, scale, shape, way);
+        way.chosen = false;
         sums = linearise_shape(pixels, scale, shape, way);
         if (sums.pixels < 0.5 * kFewestFitPixels) return false;
         const auto solver = sums.information.ldlt();

@@ -17,6 +17,7 @@ struct RoundWay {
     double rim_m = 0.0;             ///< inside the outline: left out
     double low = -1e6, high = 1e6;  ///< along the axis: beyond is left out
     bool choose = true;             ///< the pixels anew, for the shape as it is now
+    bool chosen = false;            ///< they are already for the shape as it is now
     double settled = 0.0;           ///< a step of so many standard deviations is the last
     int most_steps = kMostFitSteps;
     bool may_stop_short = false;   ///< else not to settle in so many steps is a failure

@@ -14,7 +14,7 @@ constexpr std::size_t kPoints = 160;  // oriented points of a segment
 constexpr SearchEffort kGuesses{256, 3};
 constexpr SearchEffort kSecondGuesses{512, 8, 128, 88172645U};  // where none of the first settles
 constexpr SearchEffort kSceneGuesses{256, 6};
-constexpr SearchEffort kRivals{48, 2};
+constexpr SearchEffort kRivals{32, 2};
 constexpr std::size_t kComparePixels = 512;
 constexpr double kSimplerCost = 1.15;     // what a simpler kind may be worse and still explain it
 constexpr double kHopeless = 2.0;         // times that: another guess will not do either

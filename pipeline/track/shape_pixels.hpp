@@ -18,6 +18,7 @@ struct ShapePixels {
     std::vector<float> x, y, s;  ///< ray and disparity
     std::vector<std::uint32_t> pixel;
     std::vector<float> used, weight, residual, height;  ///< see RoundPixels
+    std::vector<float> chosen_before;                   ///< as `used`, of a wider rim
 
     /// Takes those of the pixels that have a reading; of very many every 2nd, 3rd, …
     void gather(
