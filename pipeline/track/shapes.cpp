@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "pipeline/track/shape_borders.hpp"
 #include "pipeline/track/shape_search.hpp"
 #include "pipeline/track/shape_support.hpp"
 
@@ -24,7 +25,6 @@ constexpr int kSearchTries = 96;
 constexpr std::size_t kComparePixels = 4096;
 constexpr double kPlainCost = 0.12;  // Tukey's loss of noise alone is 0.08 at a gate of 6σ
 constexpr double kSimplerCost = 1.15;
-constexpr double kPixelSigmas = 4.0;  // of a pixel that belongs to a shape
 constexpr double kMaxSizeShareU = 0.15;
 constexpr double kMaxRmsSigmas = 3.0;
 constexpr int kMostFailures = 40;
@@ -49,6 +49,7 @@ struct ShapeDetector::State {
           scale(camera_),
           image(camera_),
           fitter(camera_),
+          borders(camera_),
           columns((camera_.depth.width + kCell - 1) / kCell),
           rows((camera_.depth.height + kCell - 1) / kCell) {
         const auto cells = static_cast<std::size_t>(columns * rows);
@@ -312,12 +313,6 @@ struct ShapeDetector::State {
                fit.size_u <= kMaxSizeShareU * fit.shape.size;
     }
 
-    [[nodiscard]] double disparity(const Shape& shape, std::uint32_t pixel) const {
-        const auto width = static_cast<std::uint32_t>(camera.depth.width);
-        const Eigen::Vector3d ray = camera.depth.ray(pixel % width, pixel / width);
-        return meet(ray, shape) / camera.noise.inverse_depth_step;
-    }
-
     /// Whether a candidate became a shape of the result.
     bool extract(const Shape& candidate) {
         find_component(candidate, rough());
@@ -334,23 +329,11 @@ struct ShapeDetector::State {
         if (result.size() <= results) result.emplace_back();
         SceneShape& found = result[results];
         found.pixels.clear();
-        const bool long_one =
-            fit->shape.kind == ShapeKind::cylinder || fit->shape.kind == ShapeKind::cone;
-        const double reach = 3.0 * fit->shape.point.norm() / camera.depth.fx;
         double squares = 0.0;
         for (const auto pixel : pixels) {
-            const double s = image.at(pixel);
-            const double sigma = scale.sigma_at(s);
-            const double off = s - disparity(fit->shape, pixel);
-            if (!(std::abs(off) <= kPixelSigmas * sigma)) continue;
-            if (long_one) {
-                const auto width = static_cast<std::uint32_t>(camera.depth.width);
-                const double h = height_on(
-                    fit->shape, camera.depth.ray(pixel % width, pixel / width) * scale.metres(s)
-                );
-                if (h < fit->low - reach || h > fit->high + reach) continue;
-            }
-            squares += off * off / (sigma * sigma);
+            const double off = off_in_sigmas(*fit, image, camera.depth, scale, pixel);
+            if (!(std::abs(off) <= kPixelSigmas)) continue;
+            squares += off * off;
             found.pixels.push_back(pixel);
         }
         const auto size = static_cast<double>(found.pixels.size());
@@ -411,6 +394,7 @@ struct ShapeDetector::State {
             else
                 ++failures;
         }
+        borders.share_out(image, {result.data(), results});
         std::sort(
             result.begin(),
             result.begin() + static_cast<std::ptrdiff_t>(results),
@@ -418,6 +402,9 @@ struct ShapeDetector::State {
                 return a.pixels.size() > b.pixels.size();
             }
         );
+        while (results > 0 &&
+               result[results - 1].pixels.size() < static_cast<std::size_t>(settings.min_points))
+            --results;  // its neighbours have its pixels now
     }
 
     RgbdCamera camera;
@@ -425,6 +412,7 @@ struct ShapeDetector::State {
     DisparityScale scale;
     DisparityImage image;
     ShapeFitter fitter;
+    ShapeBorders borders;
     int columns, rows;
     ShapeRandom random;
     double draws = 0.0;
