@@ -95,11 +95,47 @@ DisparityImage::DisparityImage(const RgbdCamera& camera)
       product_(static_cast<float>(DisparityScale(camera).product)),
       steps_(static_cast<std::size_t>(stride_) * static_cast<std::size_t>(height_ + 2 * kMargin)) {}
 
-void DisparityImage::load(std::span<const std::uint16_t> depth, int first_row, int last_row) {
-    for (int v = std::max(0, first_row); v <= std::min(last_row, height_ - 1); ++v) {
-        const auto* from = depth.data() + static_cast<std::ptrdiff_t>(v) * width_;
-        to_steps(from, width_, product_, const_cast<float*>(row(v)));
+void DisparityImage::load_box(
+    std::span<const std::uint16_t> depth, int left, int right, int top, int bottom
+) {
+    left = std::max(0, left), right = std::min(right, width_ - 1);
+    top = std::max(0, top), bottom = std::min(bottom, height_ - 1);
+    for (int v = top; v <= bottom; ++v) {
+        const auto* from = depth.data() + static_cast<std::ptrdiff_t>(v) * width_ + left;
+        to_steps(from, right - left + 1, product_, const_cast<float*>(row(v)) + left);
     }
+}
+
+void DisparityImage::load(std::span<const std::uint16_t> depth, int first_row, int last_row) {
+    load_box(depth, 0, width_ - 1, first_row, last_row);
+}
+
+void DisparityImage::load_around(
+    std::span<const std::uint16_t> depth, std::span<const std::uint32_t> pixels
+) {
+    const auto width = static_cast<std::uint32_t>(width_);
+    std::uint32_t left = width, right = 0, top = static_cast<std::uint32_t>(height_), bottom = 0;
+    std::uint32_t row_begin = 0, row_end = 0;  // neighbours in the list share a row
+    for (const auto pixel : pixels) {
+        if (pixel < row_begin || pixel >= row_end) {
+            const std::uint32_t row = pixel / width;
+            row_begin = row * width;
+            row_end = row_begin + width;
+            top = std::min(top, row);
+            bottom = std::max(bottom, row);
+        }
+        left = std::min(left, pixel - row_begin);
+        right = std::max(right, pixel - row_begin);
+    }
+    if (pixels.empty()) return;
+    const auto margin = kMostHalfWindow + 8;  // windows are read in eights
+    load_box(
+        depth,
+        static_cast<int>(left) - margin,
+        static_cast<int>(right) + margin,
+        static_cast<int>(top) - margin,
+        static_cast<int>(bottom) + margin
+    );
 }
 
 void SurfacePoints::clear() {

@@ -20,6 +20,8 @@ public:
     /// keep what they held.
     void load(std::span<const std::uint16_t> depth, int first_row, int last_row);
     void load(std::span<const std::uint16_t> depth) { load(depth, 0, height_ - 1); }
+    /// Only the smallest box that holds all windows about some pixels.
+    void load_around(std::span<const std::uint16_t> depth, std::span<const std::uint32_t> pixels);
 
     [[nodiscard]] const float* row(int v) const {
         return steps_.data() + static_cast<std::ptrdiff_t>(v + kMargin) * stride_ + kMargin;
@@ -32,6 +34,8 @@ public:
     static constexpr int kMostHalfWindow = 7;
 
 private:
+    void load_box(std::span<const std::uint16_t> depth, int left, int right, int top, int bottom);
+
     static constexpr int kMargin = 16;
     int width_, height_, stride_;
     float product_;

@@ -11,11 +11,13 @@ namespace kinectlab {
 namespace {
 
 constexpr std::size_t kPoints = 160;  // oriented points of a segment
-constexpr int kTries = 256;
-constexpr int kRivalTries = 48;
-constexpr std::size_t kGuesses = 3;
+constexpr SearchEffort kGuesses{256, 3};
+constexpr SearchEffort kSecondGuesses{512, 8, 128, 88172645U};  // where none of the first settles
+constexpr SearchEffort kSceneGuesses{256, 6};
+constexpr SearchEffort kRivals{32, 2};
 constexpr std::size_t kComparePixels = 512;
 constexpr double kSimplerCost = 1.15;     // what a simpler kind may be worse and still explain it
+constexpr double kHopeless = 2.0;         // times that: another guess will not do either
 constexpr double kMinInlierShare = 0.35;  // of the segment: lids, strings and hands belong to it
 constexpr double kPlentyOfInliers = 0.7;  // no further guess is tried
 constexpr double kMaxRmsSigmas = 3.0;
@@ -46,14 +48,14 @@ void SegmentShapes::sample(const DisparityImage& image, std::span<const std::uin
     find_surface_points(image, camera_, places_, half_window_for(pixels.size()), points_);
 }
 
-void SegmentShapes::guess(const ShapeTarget& target, std::size_t most) {
+void SegmentShapes::guess(const ShapeTarget& target, const SearchEffort& effort) {
     const bool votes = target.search == GuessBy::hough;
     if (votes && target.kind == ShapeKind::plane)
-        hough_planes(points_, kRough, most, guesses_);
+        hough_planes(points_, kRough, effort.most_found, guesses_);
     else if (votes && target.kind == ShapeKind::sphere)
-        hough_spheres(points_, target.limits, kRough, most, guesses_);
+        hough_spheres(points_, target.limits, kRough, effort.most_found, guesses_);
     else
-        search_shape(target.kind, points_, target.limits, kRough, kTries, most, guesses_);
+        search_shape(target.kind, points_, target.limits, kRough, effort, guesses_);
 }
 
 bool SegmentShapes::is_sound(const ShapeFit& fit, const ShapeTarget& target) const {
@@ -66,56 +68,62 @@ bool SegmentShapes::is_sound(const ShapeFit& fit, const ShapeTarget& target) con
            fit.size_u <= kMaxSizeShareU * fit.shape.size;
 }
 
-double SegmentShapes::best_cost(
-    const DisparityImage& image, std::span<const std::uint32_t> pixels, ShapeKind kind
-) {
+double SegmentShapes::best_cost(const DisparityImage& image, ShapeKind kind, double hopeless) {
     SizeLimits limits;
     if (kind == ShapeKind::cone) limits = {{}, kLeastConeAngle, kMostConeAngle};
-    search_shape(kind, points_, limits, kRough, kRivalTries, 2, guesses_);
-    double least = 1.0;
-    for (const auto& guess : guesses_)
-        if (const auto fit = rival_.fit(image, pixels, guess.shape, false))
-            least = std::min(least, fit->cost);
-    return least;
+    search_shape(kind, points_, limits, kRough, kRivals, guesses_);
+    return rival_.least_misfit(image, compared_, guesses_, hopeless);
 }
 
 bool SegmentShapes::is_its_kind(const DisparityImage& image, const ShapeFit& fit) {
-    const auto own = rival_.fit(image, compared_, fit.shape, true);
-    if (!own) return false;
     for (const auto kind :
          {ShapeKind::plane, ShapeKind::sphere, ShapeKind::cylinder, ShapeKind::cone}) {
         if (kind == fit.shape.kind) continue;
-        const double cost = best_cost(image, compared_, kind);
         const bool simpler = kind < fit.shape.kind;
-        if (simpler && cost <= kSimplerCost * own->cost + 0.01) return false;
-        if (!simpler && own->cost > kSimplerCost * cost + 0.01) return false;
+        // Guesses of simpler kinds lead to the same place; those of richer ones may lead astray.
+        const double as_good = kSimplerCost * fit.cost + 0.01;
+        const double cost = best_cost(image, kind, simpler ? kHopeless * as_good : 1.0);
+        if (simpler && cost <= as_good) return false;
+        if (!simpler && fit.cost > kSimplerCost * cost + 0.01) return false;
     }
     return true;
+}
+
+/// The guess that explains the compared pixels best, refined on them.
+std::optional<ShapeFit> SegmentShapes::best_guess(
+    const DisparityImage& image, const ShapeTarget& target
+) {
+    std::optional<ShapeFit> best;
+    for (const auto& guess : guesses_) {
+        auto fit = rival_.fit(image, compared_, guess.shape, target.limits.known.has_value());
+        if (!fit || !is_sound(*fit, target) || fit->quality.inlier_share < kMinInlierShare)
+            continue;
+        if (!best || fit->cost < best->cost) best = std::move(fit);
+        if (best->quality.inlier_share > kPlentyOfInliers) break;
+    }
+    return best;
 }
 
 std::optional<ShapeFit> SegmentShapes::in_segment(
     const DisparityImage& image, std::span<const std::uint32_t> pixels, const ShapeTarget& target
 ) {
     sample(image, pixels);
-    guess(target, kGuesses);
-    const bool known = target.limits.known.has_value();
     // Guesses and rivals are tried on some of the pixels only.
     compared_.clear();
     const std::size_t stride = 1 + pixels.size() / kComparePixels;
     for (std::size_t i = 0; i < pixels.size(); i += stride)
         compared_.push_back(pixels[i]);
-    std::optional<ShapeFit> best;
-    for (const auto& guess : guesses_) {
-        auto fit = rival_.fit(image, compared_, guess.shape, known);
-        if (!fit || !is_sound(*fit, target) || fit->quality.inlier_share < kMinInlierShare)
-            continue;
-        if (!best || fit->cost < best->cost) best = std::move(fit);
-        if (best->quality.inlier_share > kPlentyOfInliers) break;
+    guess(target, kGuesses);
+    auto found = best_guess(image, target);
+    if (!found && !guesses_.empty() && target.search == GuessBy::ransac) {
+        guess(target, kSecondGuesses);
+        found = best_guess(image, target);
     }
-    if (!best || !is_its_kind(image, *best)) return std::nullopt;
-    best = fitter_.fit(image, pixels, best->shape, known);
-    if (best && !is_sound(*best, target)) best.reset();
-    return best;
+    if (!found || !is_its_kind(image, *found)) return std::nullopt;
+    const bool known = target.limits.known.has_value();
+    found = fitter_.fit(image, pixels, found->shape, known, FitStart::refined);
+    if (found && !is_sound(*found, target)) found.reset();
+    return found;
 }
 
 void SegmentShapes::near_pixels(const DisparityImage& image, const Shape& shape) {
@@ -141,7 +149,7 @@ std::optional<ShapeFit> SegmentShapes::in_scene(
         for (int u = kSceneStride / 2; u < width; u += kSceneStride)
             places_.push_back(static_cast<std::uint32_t>(v * width + u));
     find_surface_points(image, camera_, places_, 4, points_);
-    guess(target, 2 * kGuesses);
+    guess(target, kSceneGuesses);
     std::optional<ShapeFit> best;
     for (const auto& guess : guesses_) {
         near_pixels(image, guess.shape);

@@ -40,12 +40,13 @@ public:
 
 private:
     void sample(const DisparityImage& image, std::span<const std::uint32_t> pixels);
-    void guess(const ShapeTarget& target, std::size_t most);
+    void guess(const ShapeTarget& target, const SearchEffort& effort);
+    [[nodiscard]] std::optional<ShapeFit> best_guess(
+        const DisparityImage& image, const ShapeTarget& target
+    );
     [[nodiscard]] bool is_sound(const ShapeFit& fit, const ShapeTarget& target) const;
     [[nodiscard]] bool is_its_kind(const DisparityImage& image, const ShapeFit& fit);
-    [[nodiscard]] double best_cost(
-        const DisparityImage& image, std::span<const std::uint32_t> pixels, ShapeKind kind
-    );
+    [[nodiscard]] double best_cost(const DisparityImage& image, ShapeKind kind, double hopeless);
     void near_pixels(const DisparityImage& image, const Shape& shape);
 
     RgbdCamera camera_;

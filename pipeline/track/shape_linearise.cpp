@@ -30,28 +30,27 @@ KINECTLAB_INLINE Float8 sqrt8(const Float8& value) {
     return root;
 }
 
-/// Where the rays meet the shape: p = d/w, w = 1/Z. The root's square is
+/// Where the rays meet the shape: p = d z, 1/Z = w = far/near. The root's square is
 /// ρ A - (X3² + κ (X1² + X2²)) with X = o x d by Lagrange's identity, which loses no digits in
 /// single precision.
 struct Hit {
-    Float8 w, root2, root;
-    Float8 q1, q2, q3;
+    Three d;
+    Float8 root2, root;
+    Float8 far, near;
 };
 
 KINECTLAB_INLINE Hit meet8(const RoundOptics& at, const Float8& x, const Float8& y) {
-    const Three d = linear(at.direction, x, y);
+    Hit hit;
+    hit.d = linear(at.direction, x, y);
+    const Three& d = hit.d;
     const Three m = linear(at.moment, x, y);
     const Float8 a = d.a * d.a + d.b * d.b + at.kappa * d.c * d.c;
     const Float8 b = -(at.o1 * d.a + at.o2 * d.b + at.kappa * at.o3 * d.c);
-    Hit hit;
     hit.root2 = at.rho * a - (m.c * m.c + at.kappa * (m.a * m.a + m.b * m.b));
     hit.root = sqrt8(choose8(hit.root2 > 1e-12F, hit.root2, all8(1e-12F)));
     const Mask8 front = b > 0.0F;
-    hit.w = choose8(front, b + hit.root, a) / choose8(front, all8(at.c), b - hit.root);
-    const Float8 z = 1.0F / hit.w;
-    hit.q1 = at.o1 + z * d.a;
-    hit.q2 = at.o2 + z * d.b;
-    hit.q3 = at.o3 + z * d.c;
+    hit.far = choose8(front, b + hit.root, a);
+    hit.near = choose8(front, all8(at.c), b - hit.root);
     return hit;
 }
 
@@ -62,39 +61,58 @@ KINECTLAB_HOT_LOOP void choose(
     const RoundOptics at = optics;
     for (std::size_t i = 0; i < pixels.size; i += kFitLanes) {
         const Hit hit = meet8(at, load8(pixels.x + i), load8(pixels.y + i));
-        const Mask8 met = (hit.root2 > 0.0F) & (hit.w > 0.0F) & (hit.q3 >= at.least_height) &
-                          (hit.q3 >= low) & (hit.q3 <= high) & (load8(pixels.s + i) > 0.0F);
+        const Float8 z = hit.near / hit.far;
+        const Float8 height = at.o3 + z * hit.d.c;
+        const Mask8 met = (hit.root2 > 0.0F) & (z > 0.0F) & (height >= at.least_height) &
+                          (height >= low) & (height <= high) & (load8(pixels.s + i) > 0.0F);
         store8(pixels.used + i, keep8(all8(1.0F), met));
     }
 }
 
+constexpr std::size_t kChunk = 512;  // single precision sums this many at most
+
+/// Of one chunk's pixels, by t1, t2, t3, ω1, ω2 and the size; small enough for the nearest cache.
+struct Slopes {
+    alignas(32) std::array<std::array<float, kChunk>, 6> by;
+};
+
 /// ∂w/∂t = w² (q1, q2, κ q3)/root, ∂w/∂ω = w² (κ - 1) q3 (q2, -q1)/root and ∂w/∂size likewise from
 /// -∂F/∂size: all from F = 0 by implicit differentiation, where ∂(F w²)/∂w = 2 root.
-KINECTLAB_HOT_LOOP void linearise(
-    const RoundPixels& all, const RoundOptics& optics, float per_gate2
+KINECTLAB_INLINE void linearise_chunk(
+    const RoundPixels& pixels,
+    const RoundOptics& at,
+    float per_gate2,
+    std::size_t begin,
+    std::size_t end,
+    Slopes& slopes
 ) {
-    const RoundPixels pixels = all;  // copies, which no store can change
-    const RoundOptics at = optics;
     const Float8 none = all8(__builtin_nanf(""));
-    for (std::size_t i = 0; i < pixels.size; i += kFitLanes) {
+    for (std::size_t i = begin; i < end; i += kFitLanes) {
         const Hit hit = meet8(at, load8(pixels.x + i), load8(pixels.y + i));
-        const Mask8 met = (hit.root2 > 1e-12F) & (hit.w > 0.0F) & (hit.q3 >= at.least_height);
-        const Float8 residual = load8(pixels.s + i) - hit.w * at.per_step;
+        // One division for w, z and 1/root: it takes as long as all the rest.
+        const Float8 product = hit.far * hit.near;
+        const Float8 inverse = 1.0F / (product * hit.root);
+        const Float8 per_root = inverse * product, per_product = inverse * hit.root;
+        const Float8 w = hit.far * hit.far * per_product;
+        const Float8 z = hit.near * hit.near * per_product;
+        const Float8 q1 = at.o1 + z * hit.d.a, q2 = at.o2 + z * hit.d.b, q3 = at.o3 + z * hit.d.c;
+        const Mask8 met = (hit.root2 > 1e-12F) & (w > 0.0F) & (q3 >= at.least_height);
+        const Float8 residual = load8(pixels.s + i) - w * at.per_step;
         const Float8 tukey = 1.0F - residual * residual * per_gate2;
         const Mask8 counts = met & (tukey > 0.0F);
         store8(pixels.residual + i, choose8(met, residual, none));
         store8(pixels.weight + i, keep8(load8(pixels.used + i) * tukey * tukey, counts));
-        store8(pixels.height + i, choose8(met, hit.q3, none));
-        const Float8 scale = keep8(at.per_step * hit.w * hit.w / hit.root, met);
-        const Float8 bent = (at.kappa - 1.0F) * hit.q3 * scale;
-        store8(pixels.slope[0] + i, keep8(scale * hit.q1, met));
-        store8(pixels.slope[1] + i, keep8(scale * hit.q2, met));
-        store8(pixels.slope[2] + i, keep8(scale * at.kappa * hit.q3, met));
-        store8(pixels.slope[3] + i, keep8(bent * hit.q2, met));
-        store8(pixels.slope[4] + i, keep8(-bent * hit.q1, met));
-        store8(
-            pixels.slope[5] + i, keep8(scale * (at.by_size + at.by_size3 * hit.q3 * hit.q3), met)
-        );
+        store8(pixels.height + i, choose8(met, q3, none));
+        const Float8 scale = keep8(at.per_step * w * w * per_root, met);
+        const Float8 bent = (at.kappa - 1.0F) * q3 * scale;
+        const Float8 by_size = scale * (at.by_size + at.by_size3 * q3 * q3);
+        const std::size_t k = i - begin;
+        store8(slopes.by[0].data() + k, keep8(scale * q1, met));
+        store8(slopes.by[1].data() + k, keep8(scale * q2, met));
+        store8(slopes.by[2].data() + k, keep8(scale * at.kappa * q3, met));
+        store8(slopes.by[3].data() + k, keep8(bent * q2, met));
+        store8(slopes.by[4].data() + k, keep8(-bent * q1, met));
+        store8(slopes.by[5].data() + k, keep8(by_size, met));
     }
 }
 
@@ -105,41 +123,64 @@ KINECTLAB_INLINE double total(const Float8& value) {
     return sum;
 }
 
-constexpr std::size_t kChunk = 512;  // single precision sums this many at most
-
-KINECTLAB_HOT_LOOP void sum_all(
+/// Over the first N of the slopes.
+template <std::size_t N>
+KINECTLAB_INLINE void sum_chunk(
     const std::array<const float*, 6>& slope,
     const float* weight,
     const float* residual,
     std::size_t size,
     NormalSums& sums
 ) {
-    for (std::size_t begin = 0; begin < size; begin += kChunk) {
-        const std::size_t end = begin + kChunk < size ? begin + kChunk : size;
-        std::array<Float8, 21> products{};
-        std::array<Float8, 6> gradient{};
-        Float8 weights{};
-        for (std::size_t i = begin; i < end; i += kFitLanes) {
-            const Float8 w = load8(weight + i);
-            const Mask8 counts = w > 0.0F;
-            const Float8 r = keep8(load8(residual + i), counts);
-            std::array<Float8, 6> s;
-            for (std::size_t k = 0; k < 6; ++k)
-                s[k] = load8(slope[k] + i);
-            weights += w;
-            std::size_t k = 0;
-            for (std::size_t row = 0; row < 6; ++row) {
-                const Float8 weighted = w * s[row];
-                gradient[row] += weighted * r;
-                for (std::size_t column = 0; column <= row; ++column, ++k)
-                    products[k] += weighted * s[column];
-            }
+    std::array<Float8, N*(N + 1) / 2> products{};
+    std::array<Float8, N> gradient{};
+    Float8 weights{};
+    for (std::size_t i = 0; i < size; i += kFitLanes) {
+        const Float8 w = load8(weight + i);
+        const Mask8 counts = w > 0.0F;
+        const Float8 r = keep8(load8(residual + i), counts);
+        std::array<Float8, N> s;
+        for (std::size_t k = 0; k < N; ++k)
+            s[k] = load8(slope[k] + i);
+        weights += w;
+        std::size_t k = 0;
+        for (std::size_t row = 0; row < N; ++row) {
+            const Float8 weighted = w * s[row];
+            gradient[row] += weighted * r;
+            for (std::size_t column = 0; column <= row; ++column, ++k)
+                products[k] += weighted * s[column];
         }
-        for (std::size_t k = 0; k < 21; ++k)
-            sums.products[k] += total(products[k]);
-        for (std::size_t k = 0; k < 6; ++k)
-            sums.gradient[k] += total(gradient[k]);
-        sums.weights += total(weights);
+    }
+    for (std::size_t k = 0; k < products.size(); ++k)
+        sums.products[k] += total(products[k]);
+    for (std::size_t k = 0; k < N; ++k)
+        sums.gradient[k] += total(gradient[k]);
+    sums.weights += total(weights);
+}
+
+KINECTLAB_HOT_LOOP void linearise(
+    const RoundPixels& all,
+    const RoundOptics& optics,
+    float per_gate2,
+    const RoundUnknowns& active,
+    NormalSums& sums
+) {
+    const RoundPixels pixels = all;  // copies, which no store can change
+    const RoundOptics at = optics;
+    Slopes slopes;
+    std::array<const float*, 6> slope{};
+    std::size_t unknowns = 0;
+    for (std::size_t k = 0; k < 6; ++k)
+        if (active[k]) slope[unknowns++] = slopes.by[k].data();
+    for (std::size_t begin = 0; begin < pixels.size; begin += kChunk) {
+        const std::size_t end = begin + kChunk < pixels.size ? begin + kChunk : pixels.size;
+        linearise_chunk(pixels, at, per_gate2, begin, end, slopes);
+        const float *weight = pixels.weight + begin, *residual = pixels.residual + begin;
+        const std::size_t size = end - begin;
+        if (unknowns == 6) sum_chunk<6>(slope, weight, residual, size, sums);
+        if (unknowns == 5) sum_chunk<5>(slope, weight, residual, size, sums);
+        if (unknowns == 4) sum_chunk<4>(slope, weight, residual, size, sums);
+        if (unknowns == 3) sum_chunk<3>(slope, weight, residual, size, sums);
     }
 }
 
@@ -211,18 +252,14 @@ void choose_pixels(const RoundPixels& pixels, const RoundOptics& optics, double 
     choose(pixels, optics, static_cast<float>(low), static_cast<float>(high));
 }
 
-void linearise_round(const RoundPixels& pixels, const RoundOptics& optics, double gate_steps) {
-    linearise(pixels, optics, static_cast<float>(1.0 / (gate_steps * gate_steps)));
-}
-
-NormalSums sum_equations(
-    const std::array<const float*, 6>& slope,
-    const float* weight,
-    const float* residual,
-    std::size_t size
+NormalSums linearise_round(
+    const RoundPixels& pixels,
+    const RoundOptics& optics,
+    double gate_steps,
+    const RoundUnknowns& active
 ) {
     NormalSums sums;
-    sum_all(slope, weight, residual, size, sums);
+    linearise(pixels, optics, static_cast<float>(1.0 / (gate_steps * gate_steps)), active, sums);
     return sums;
 }
 

@@ -14,7 +14,6 @@ struct RoundPixels {
     std::size_t size;
     const float *x, *y, *s;                    ///< ray and disparity; 0 = no reading
     float *used, *weight, *residual, *height;  ///< residual NaN where the ray does not meet it
-    std::array<float*, 6> slope;               ///< by t1, t2, t3, ω1, ω2 and the size
 };
 
 /// A sphere, cylinder or cone as the rays see it, in its own frame q = Rᵀ(p - point): the camera is
@@ -37,19 +36,23 @@ struct RoundOptics {
 /// used = 1 for readings whose rays meet the shape between two heights.
 void choose_pixels(const RoundPixels& pixels, const RoundOptics& optics, double low, double high);
 
-/// Residual in steps, Tukey's weight of used pixels, height and slopes.
-void linearise_round(const RoundPixels& pixels, const RoundOptics& optics, double gate_steps);
+/// What of t1, t2, t3, ω1, ω2 and the size is unknown: 3 to 6 of them.
+using RoundUnknowns = std::array<bool, 6>;
 
+/// Over the unknowns only, in their order.
 struct NormalSums {
     std::array<double, 21> products{};  ///< Σ weight·slope·slope, the lower triangle row by row
     std::array<double, 6> gradient{};   ///< Σ weight·slope·residual
     double weights = 0.0;
 };
-[[nodiscard]] NormalSums sum_equations(
-    const std::array<const float*, 6>& slope,
-    const float* weight,
-    const float* residual,
-    std::size_t size
+
+/// Residual in steps, Tukey's weight of used pixels and height of every pixel; the sums of the next
+/// step.
+NormalSums linearise_round(
+    const RoundPixels& pixels,
+    const RoundOptics& optics,
+    double gate_steps,
+    const RoundUnknowns& unknowns
 );
 
 struct PlanePixels {

@@ -55,24 +55,24 @@ void search_shape(
     const SurfacePoints& points,
     const SizeLimits& limits,
     const Tolerance& tolerance,
-    int tries,
-    std::size_t most,
+    const SearchEffort& effort,
     std::vector<ShapeCandidate>& best
 ) {
     best.clear();
     if (points.size < kFewestPoints) return;
-    ShapeRandom random;
+    ShapeRandom random(effort.seed);
     std::array<OrientedPoint, 3> sample;
     const std::size_t used = sample_size(kind);
-    double needed = tries;
-    for (int i = 0; i < tries && i < needed; ++i) {
+    double needed = effort.most_tries;
+    for (int i = 0; i < effort.most_tries && i < std::max<double>(effort.least_tries, needed);
+         ++i) {
         for (std::size_t k = 0; k < used; ++k)
             sample[k] = points.at(random.below(points.size));
         const auto shape = propose(kind, sample, limits);
         if (!shape) continue;
         const int support = count_support(*shape, points, 0, points.size, tolerance);
         if (support < static_cast<int>(kFewestPoints) / 2) continue;
-        keep_best(best, most, {*shape, support});
+        keep_best(best, effort.most_found, {*shape, support});
         const double share =
             static_cast<double>(best.front().support) / static_cast<double>(points.size);
         // Two more points than needed: of good ones not every sample makes a good shape.

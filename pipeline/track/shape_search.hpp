@@ -50,16 +50,22 @@ struct ShapeCandidate {
     ShapeKind kind, std::span<const OrientedPoint> sample, const SizeLimits& limits
 );
 
-/// RANSAC over one thing's points: the shapes that most of them support, best first, at most
-/// `most`. Draws until a better one is unlikely to be missed (Fischler & Bolles 1981), `tries` at
-/// most.
+/// How long to look.
+struct SearchEffort {
+    int most_tries = 256;
+    std::size_t most_found = 3;
+    int least_tries = 0;
+    std::uint32_t seed = 2463534242U;
+};
+
+/// RANSAC over one thing's points: the shapes that most of them support, best first. Draws until a
+/// better one is unlikely to be missed (Fischler & Bolles 1981).
 void search_shape(
     ShapeKind kind,
     const SurfacePoints& points,
     const SizeLimits& limits,
     const Tolerance& tolerance,
-    int tries,
-    std::size_t most,
+    const SearchEffort& effort,
     std::vector<ShapeCandidate>& best
 );
 

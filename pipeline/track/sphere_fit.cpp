@@ -7,18 +7,18 @@
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
 
-#include "pipeline/core/hot_loop.hpp"
+#include "pipeline/track/sphere_linearise.hpp"
 
 namespace kinectlab {
 namespace {
 
-constexpr int kMostPixels = 16384;      // more would not be felt in the result: every 2nd, 3rd, …
-constexpr double kMargin = 1.3;         // of the radius: the window shows what surrounds the sphere
-constexpr double kRing = 1.1;           // of the radius: what lies beyond is not the sphere
-constexpr double kRimAtFirst = 0.5;     // px inside the outline: what is farther out is left out
-constexpr double kRimSigmas = 3.0;      // of the centre across the rays, once it is known
-constexpr double kMinCosine = 0.25;     // of the incidence of rays that tell whether it is a sphere
-constexpr float kLeastCosine2 = 4e-4F;  // keeps the slopes of grazing rays finite
+constexpr int kMostPixels = 16384;   // more would not be felt in the result: every 2nd, 3rd, …
+constexpr double kMargin = 1.3;      // of the radius: the window shows what surrounds the sphere
+constexpr double kRing = 1.1;        // of the radius: what lies beyond is not the sphere
+constexpr double kRimAtFirst = 0.5;  // px inside the outline: what is farther out is left out
+constexpr double kRimSigmas = 3.0;   // of the centre across the rays, once it is known
+constexpr int kChoices = 3;          // of the pixels: each knows the rim better, which tells most
+constexpr double kMinCosine = 0.25;  // of the incidence of rays that tell whether it is a sphere
 constexpr int kMaxIterations = 12;
 constexpr double kSettled_m = 5e-6;  // a smaller step changes nothing that the noise would show
 constexpr double kStillMoving_m = 1e-3;
@@ -28,120 +28,6 @@ constexpr int kFewestPixels = 24;
 constexpr int kBlock = 10;        // px: a Kinect correlates over 9
 constexpr double kFading = 0.97;  // of what earlier pictures told about the noise
 constexpr double kMostLateralPx = 2.0;
-
-constexpr std::size_t kLanes = 8;  // sums run side by side, for the vector units
-
-/// The window's arrays, their size a multiple of kLanes.
-struct Pixels {
-    std::size_t size;
-    const float *x, *y, *s;
-    float *used, *weight, *residual, *steep;
-    std::array<float*, 4> slope;
-};
-
-/// A linearisation point in single precision.
-struct Point {
-    float cx, cy, cz, radius;
-    float power;   ///< c·c - r²
-    float chosen;  ///< radius of what is surely sphere: the rim left out
-    float per_step, gate;
-    float lateral;  ///< (σ_lateral / (σ f))², px² / steps²
-};
-
-Point point_at(const Sphere& sphere, double rim_m) {
-    const Eigen::Vector3f c = sphere.centre_cam.cast<float>();
-    const double power = sphere.centre_cam.squaredNorm() - sphere.radius * sphere.radius;
-    const double chosen = std::max(0.5 * sphere.radius, sphere.radius - rim_m);
-    Point at{};
-    at.cx = c.x(), at.cy = c.y(), at.cz = c.z();
-    at.radius = static_cast<float>(sphere.radius);
-    at.power = static_cast<float>(power);
-    at.chosen = static_cast<float>(chosen);
-    return at;
-}
-
-/// The square of meet()'s root from the cross product, r² d·d - |d x c|², which loses no digits in
-/// single precision.
-inline float root2_of(float x, float y, float d2, float radius, const Point& at) {
-    const float across_x = y * at.cz - at.cy;
-    const float across_y = at.cx - x * at.cz;
-    const float across_z = x * at.cy - y * at.cx;
-    const float across2 = across_x * across_x + across_y * across_y + across_z * across_z;
-    return radius * radius * d2 - across2;
-}
-
-/// Which pixels the fit rests on: those with a reading whose rays pass well within the outline.
-KINECTLAB_HOT_LOOP void choose(const Pixels& pixels, const Point& point) {
-    const Point at = point;
-    const float *xs = pixels.x, *ys = pixels.y, *ss = pixels.s;
-    float* used = pixels.used;
-#pragma GCC ivdep  // the arrays are all different ones
-    for (std::size_t i = 0; i < pixels.size; ++i) {
-        const float x = xs[i], y = ys[i];
-        const float d2 = x * x + y * y + 1.0F;
-        const float read = std::min(ss[i], 1.0F);  // nothing is as far as one step, 350 m
-        used[i] = root2_of(x, y, d2, at.chosen, at) > 0.0F ? read : 0.0F;
-    }
-}
-
-/// Residual, Tukey's weight and the slopes of every pixel. From the implicit equation of meet():
-/// dw/dc = (w d - w² c)/root and dw/dr = w² r/root.
-KINECTLAB_HOT_LOOP void linearise(const Pixels& pixels, const Point& point) {
-    const Point at = point;
-    const float* xs = pixels.x;
-    const float* ys = pixels.y;
-    const float* ss = pixels.s;
-    float* weights = pixels.weight;
-    float* residuals = pixels.residual;
-    float* by_x = pixels.slope[0];
-    float* by_y = pixels.slope[1];
-    float* by_z = pixels.slope[2];
-    float* by_r = pixels.slope[3];
-    const float* used = pixels.used;
-    float* steep = pixels.steep;
-    const float r2 = at.radius * at.radius;
-#pragma GCC ivdep  // the arrays are all different ones
-    for (std::size_t i = 0; i < pixels.size; ++i) {
-        const float x = xs[i], y = ys[i];
-        const float d2 = x * x + y * y + 1.0F;
-        const float root2 = root2_of(x, y, d2, at.radius, at);
-        const float root = std::sqrt(std::max(root2, kLeastCosine2 * r2 * d2));
-        const float w = (x * at.cx + y * at.cy + at.cz + root) / at.power;
-        const float aside_x = x - w * at.cx, aside_y = y - w * at.cy;
-        const float steepness = at.per_step / root;
-        // A pixel that looks aside by σ_lateral errs the more, the steeper the surface.
-        const float slope2 = steepness * steepness * (aside_x * aside_x + aside_y * aside_y);
-        const float variance = 1.0F + at.lateral * slope2;
-        const float residual = ss[i] - w * at.per_step;
-        const float off2 = residual * residual / (at.gate * at.gate * variance);
-        const float tukey = std::max(0.0F, 1.0F - off2);
-        weights[i] = used[i] * tukey * tukey / variance;
-        residuals[i] = residual;
-        steep[i] = slope2;
-        const float scale = w * steepness;
-        by_x[i] = scale * aside_x;
-        by_y[i] = scale * aside_y;
-        by_z[i] = scale * (1.0F - w * at.cz);
-        by_r[i] = scale * w * at.radius;
-    }
-}
-
-/// Sum of weight·a·b.
-KINECTLAB_HOT_LOOP double weighted_sum(
-    const float* __restrict weight,
-    const float* __restrict a,
-    const float* __restrict b,
-    std::size_t size
-) {
-    std::array<float, kLanes> sums{};
-    for (std::size_t i = 0; i < size; i += kLanes)
-        for (std::size_t lane = 0; lane < kLanes; ++lane)
-            sums[lane] += weight[i + lane] * a[i + lane] * b[i + lane];
-    double total = 0.0;
-    for (const float sum : sums)
-        total += sum;
-    return total;
-}
 
 }  // namespace
 
@@ -189,7 +75,7 @@ void SphereFitter::gather(std::span<const std::uint16_t> depth, const Sphere& sp
             s_.push_back(row[u] == 0 ? 0.0F : static_cast<float>(scale_.steps(row[u])));
         }
     }
-    const std::size_t padded = (s_.size() + kLanes - 1) / kLanes * kLanes;
+    const std::size_t padded = (s_.size() + kSphereLanes - 1) / kSphereLanes * kSphereLanes;
     for (auto* field : {&x_, &y_, &s_, &used_, &weight_, &residual_, &steep_})
         field->resize(padded, 0.0F);
     for (auto& field : slope_)
@@ -197,7 +83,7 @@ void SphereFitter::gather(std::span<const std::uint16_t> depth, const Sphere& sp
 }
 
 SphereFitter::Equations SphereFitter::equations(const Sphere& sphere, const Step& step) {
-    const Pixels pixels{
+    const SpherePixels pixels{
         s_.size(),
         x_.data(),
         y_.data(),
@@ -207,41 +93,37 @@ SphereFitter::Equations SphereFitter::equations(const Sphere& sphere, const Step
         residual_.data(),
         steep_.data(),
         {slope_[0].data(), slope_[1].data(), slope_[2].data(), slope_[3].data()}};
-    Point at = point_at(sphere, step.rim_m);
+    SphereOptics at = sphere_optics(sphere, step.rim_m);
     at.per_step = static_cast<float>(1.0 / scale_.inverse_depth_step);
     at.gate = static_cast<float>(step.gate_steps);
     at.lateral = static_cast<float>(lateral());
-    if (step.choose_pixels) choose(pixels, at);
-    linearise(pixels, at);
-    const auto sum = [this](const std::vector<float>& a, const std::vector<float>& b) {
-        return weighted_sum(weight_.data(), a.data(), b.data(), s_.size());
-    };
+    if (step.choose_pixels) choose_pixels(pixels, at);
+    linearise_sphere(pixels, at);
+    const SphereSums found = sum_equations(pixels);
     Equations sums;
     const int unknowns =
         step.fixed_radius ? 3 : 4;  // of a known radius the equation is "no change"
+    std::size_t k = 0;
     for (int row = 0; row < unknowns; ++row) {
-        const auto& by_row = slope_[static_cast<std::size_t>(row)];
-        sums.gradient[row] = sum(by_row, residual_);
-        for (int column = 0; column <= row; ++column) {
-            const double value = sum(by_row, slope_[static_cast<std::size_t>(column)]);
-            sums.information(row, column) = sums.information(column, row) = value;
-        }
+        sums.gradient[row] = found.gradient[static_cast<std::size_t>(row)];
+        for (int column = 0; column <= row; ++column, ++k)
+            sums.information(row, column) = sums.information(column, row) = found.products[k];
     }
-    // used is 1 wherever a weight is not 0.
-    sums.pixels = sum(used_, used_) + lateral() * sum(used_, steep_);
-    sums.squares = sum(residual_, residual_);
+    sums.pixels = found.weights + lateral() * found.steep;
+    sums.squares = found.squares;
     return sums;
 }
 
 /// Gauss-Newton steps. The gate closes on the noise as the guess's own error leaves the residuals.
-/// Then the pixels are chosen once more, those that surely show the sphere as well as its centre is
-/// known, and stay: pixels at the rim that come and go would keep the fit from settling.
+/// Then the pixels are chosen anew, those that surely show the sphere as well as its centre is
+/// known, until a further choice would add little, and stay: pixels at the rim that come and go
+/// would keep the fit from settling.
 bool SphereFitter::settle(Sphere& sphere, Equations& sums, double sigma, bool fixed) {
     const double first_radius = sphere.radius;
     const double last_gate = kLastGateSigmas * sigma;
     Step way{
         kFirstGateSigmas * sigma, kRimAtFirst * sphere.centre_cam.z() / camera_.fx, true, fixed};
-    bool last_choice = false;
+    int choices = kChoices;
     double step_m = 0.0;
     for (int i = 0; i < kMaxIterations; ++i) {
         sums = equations(sphere, way);
@@ -256,9 +138,9 @@ bool SphereFitter::settle(Sphere& sphere, Equations& sums, double sigma, bool fi
         sphere.radius += step[3];
         if (sphere.radius <= 0.0 || sphere.centre_cam.z() <= sphere.radius) return false;
         if (!way.choose_pixels && step_m < kSettled_m) break;
-        way.choose_pixels = way.choose_pixels && !last_choice;
+        way.choose_pixels = way.choose_pixels && choices > 0;
         if (way.choose_pixels && way.gate_steps == last_gate) {
-            last_choice = true;
+            --choices;
             const Eigen::Matrix4d covariance = sigma * sigma * sums.information.inverse();
             way.rim_m = kRimSigmas * std::sqrt(covariance.topLeftCorner<2, 2>().trace() / 2.0);
         }
@@ -339,7 +221,7 @@ double SphereFitter::correlation_inflation() {
 /// Follows equations() of the same sphere, whose residuals it reads.
 void SphereFitter::assess(SphereFit& fit, double sigma) const {
     const Sphere& sphere = fit.sphere;
-    const Point at = point_at(sphere, 0.0);
+    const SphereOptics at = sphere_optics(sphere, 0.0);
     const double r = sphere.radius, z = sphere.centre_cam.z();
     const auto inside = static_cast<float>(std::sqrt(1.0 - kMinCosine * kMinCosine) * r);
     const auto ring = static_cast<float>(kRing * r), margin = static_cast<float>(kMargin * r);
