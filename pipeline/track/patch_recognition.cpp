@@ -8,10 +8,10 @@ namespace {
 
 constexpr std::size_t kMatchesAPatch = 200;
 constexpr double kMostPatchDistance = 0.5;  // χ²
-constexpr std::size_t kFirstLook = 16;      // points after which most poses are given up
-constexpr float kFirstScore = 0.15F;
-constexpr float kLeastScore = 0.25F;
-constexpr std::size_t kSketches = 48;  // poses that are laid upon the picture
+constexpr float kRoughScore = 0.1F;         // of a pose as it was proposed
+constexpr float kLeastScore = 0.3F;         // of one that was moved nearer
+constexpr std::size_t kSketches = 160;      // poses that are laid upon the picture
+constexpr double kPlainMerit = 0.93;        // nothing better is to be expected
 constexpr std::size_t kFinals = 4;
 constexpr int kSketchRounds = 3;
 
@@ -56,34 +56,9 @@ PatchRecogniser::PatchRecogniser(
       settings_(settings_for(model_->radius_m)),
       random_(seed),
       table_(camera, *model_, settings_, random_),
+      check_(camera, model_->radius_m),
       sketch_(camera, {240, 60, 2500}),
       fitter_(camera) {}
-
-float PatchRecogniser::score(const Eigen::Isometry3f& T, const std::vector<ViewPoint>& points)
-    const {
-    const auto fx = static_cast<float>(camera_.depth.fx), fy = static_cast<float>(camera_.depth.fy);
-    const auto cx = static_cast<float>(camera_.depth.cx) + 0.5F;
-    const auto cy = static_cast<float>(camera_.depth.cy) + 0.5F;
-    const float gate = std::clamp(0.15F * static_cast<float>(model_->radius_m), 0.01F, 0.03F);
-    int sum = 0;
-    std::size_t seen = 0;
-    for (const auto& point : points) {
-        const Eigen::Vector3f p = T * point.p_obj.cast<float>();
-        ++seen;
-        if (seen == kFirstLook && static_cast<float>(sum) < kFirstScore * kFirstLook) break;
-        if (p.z() < 0.1F) continue;
-        const float inverse = 1.0F / p.z();
-        const float u = fx * p.x() * inverse + cx, v = fy * p.y() * inverse + cy;
-        if (!(u >= 0.0F && v >= 0.0F)) continue;
-        const auto column = static_cast<int>(u), row = static_cast<int>(v);
-        if (column >= camera_.depth.width || row >= camera_.depth.height) continue;
-        const float off = z_[static_cast<std::size_t>(row * camera_.depth.width + column)] - p.z();
-        // A reading behind says no, one before says nothing; without a reading z is 0.
-        if (std::abs(off) < gate) ++sum;
-        if (off > 2.0F * gate) --sum;
-    }
-    return seen == 0 ? 0.0F : static_cast<float>(sum) / static_cast<float>(seen);
-}
 
 void PatchRecogniser::consider(const SurfacePatch& patch, const ModelPatch& match) {
     const Eigen::Matrix3d from = frame_of(match.patch.keypoint);
@@ -93,8 +68,12 @@ void PatchRecogniser::consider(const SurfacePatch& patch, const ModelPatch& matc
         T.linear() = to * from.transpose();
         T.translation() = patch.keypoint.p_cam - T.linear() * match.patch.keypoint.p_cam;
         const Eigen::Isometry3f pose = T.cast<float>();
-        const float reached = score(pose, table_.view(match.view));
-        if (reached >= kLeastScore) proposals_.push_back({pose, reached, match.view});
+        const SketchView& view = table_.view(match.view);
+        if (check_.score(pose, view) >= kRoughScore) {
+            const Eigen::Isometry3f settled = check_.settle(pose, view);
+            const float reached = check_.score(settled, view);
+            if (reached >= kLeastScore) proposals_.push_back({settled, reached});
+        }
         to.col(0) = -to.col(0);
         to.col(1) = -to.col(1);
     }
@@ -128,10 +107,7 @@ double PatchRecogniser::merit(const ModelFit& fit) const {
 }
 
 std::optional<ModelFit> PatchRecogniser::find(std::span<const std::uint16_t> depth) {
-    z_.resize(depth.size());
-    std::transform(depth.begin(), depth.end(), z_.begin(), [&](std::uint16_t counts) {
-        return static_cast<float>(counts * camera_.depth_unit_m);
-    });
+    check_.set(depth);
     proposals_.clear();
     for (const auto& patch : find_surface_patches(depth, camera_, settings_))
         propose(patch);
@@ -143,8 +119,12 @@ std::optional<ModelFit> PatchRecogniser::find(std::span<const std::uint16_t> dep
 
     const ModelFitStart far{0.05, 0.5, 0.06};
     std::vector<ModelFit> sketches;
-    for (const auto& T : distinct_best())
-        if (auto fit = sketch_.fit(depth, *model_, T, far, kSketchRounds)) sketches.push_back(*fit);
+    for (const auto& T : distinct_best()) {
+        const auto fit = sketch_.fit(depth, *model_, T, far, kSketchRounds);
+        if (!fit) continue;
+        sketches.push_back(*fit);
+        if (merit(*fit) > kPlainMerit) break;
+    }
     std::stable_sort(sketches.begin(), sketches.end(), [&](const ModelFit& a, const ModelFit& b) {
         return merit(a) > merit(b);
     });

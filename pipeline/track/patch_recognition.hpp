@@ -29,8 +29,8 @@ struct Acceptance {
 /// Finds an object anywhere in a picture. Each of the picture's patches proposes, for the model's
 /// patches that the table gives it, the poses that lay one keypoint, its normal and its direction
 /// of least bending upon the other's (two, the direction has no sign); poses are checked on a
-/// growing number of the view's points against the readings, the best are laid upon the picture by
-/// ModelFitter, and the best of those is taken if it is accepted.
+/// growing number of the view's points against the readings, moved nearer, checked again, the best
+/// are laid upon the picture by ModelFitter, and the best of those is taken if it is accepted.
 /// The same seed finds the same. Not thread-safe.
 class PatchRecogniser {
 public:
@@ -47,13 +47,10 @@ private:
     struct Proposal {
         Eigen::Isometry3f T_cam_obj;
         float score;
-        std::uint32_t view;
     };
 
     void propose(const SurfacePatch& patch);
     void consider(const SurfacePatch& patch, const ModelPatch& match);
-    [[nodiscard]] float score(const Eigen::Isometry3f& T, const std::vector<ViewPoint>& points)
-        const;
     [[nodiscard]] std::vector<Eigen::Isometry3d> distinct_best() const;
     [[nodiscard]] double merit(const ModelFit& fit) const;
 
@@ -62,8 +59,8 @@ private:
     PatchSettings settings_;
     std::mt19937 random_;
     PatchTable table_;
+    PoseCheck check_;
     ModelFitter sketch_, fitter_;
-    std::vector<float> z_;  // m, of the picture
     std::vector<Proposal> proposals_;
 };
 

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "pipeline/track/model_view.hpp"
+
 namespace kinectlab {
 namespace {
 
@@ -10,7 +12,9 @@ constexpr double kTypicalDistance = 1.0;  // m
 constexpr double kLeastRadii = 5.0;       // distance in radii of the object, for large ones
 constexpr double kViewUnit = 1e-4;        // m for each count of a drawn depth picture
 constexpr std::size_t kPointsAView = 96;
-constexpr float kSpreadScale = 3.0F;  // the spread of a share is at most one half
+constexpr std::size_t kOutsideAView = 48;
+constexpr double kOutsideRadii = 0.12;  // from the outline
+constexpr float kSpreadScale = 3.0F;    // the spread of a share is at most one half
 
 /// The camera's own optics, with a picture that just holds the object.
 RgbdCamera view_camera(const RgbdCamera& camera, double radius_m, double distance_m) {
@@ -50,6 +54,21 @@ std::vector<std::uint16_t> depth_picture(const ModelViewer::Picture& drawn, cons
     return depth;
 }
 
+SketchView sketch_of(
+    const ModelView& seen, const Eigen::Isometry3d& T_cam_obj, double radius_m, std::mt19937& random
+) {
+    SketchView view;
+    for (const auto& point : seen.surface)
+        view.surface.push_back({point.p_obj.cast<float>(), point.n_obj.cast<float>()});
+    std::shuffle(view.surface.begin(), view.surface.end(), random);
+    for (const auto& point : seen.outline) {
+        const Eigen::Vector3d outwards(point.outwards.x(), point.outwards.y(), 0.0);
+        const Eigen::Vector3d away = T_cam_obj.linear().transpose() * outwards;
+        view.outside.emplace_back((point.p_obj + kOutsideRadii * radius_m * away).cast<float>());
+    }
+    return view;
+}
+
 void to_model_frame(SurfacePatch& patch, const Eigen::Isometry3d& T_obj_cam) {
     patch.keypoint.p_cam = T_obj_cam * patch.keypoint.p_cam;
     patch.keypoint.normal = T_obj_cam.linear() * patch.keypoint.normal;
@@ -87,12 +106,11 @@ PatchTable::PatchTable(
     : cells_(static_cast<std::size_t>(kSurfaceTypes * kCells * kCells)) {
     const double distance_m = std::max(kTypicalDistance, kLeastRadii * model.radius_m);
     const RgbdCamera own = view_camera(camera, model.radius_m, distance_m);
-    ModelViewer viewer(own.depth, {kPointsAView, 0, 1'000'000});
+    ModelViewer viewer(own.depth, {kPointsAView, kOutsideAView, 1'000'000});
     for (const auto& direction : view_directions()) {
         const Eigen::Isometry3d T_cam_obj = look_along(direction, distance_m);
         const ModelView& seen = viewer.look(model, T_cam_obj);
-        views_.push_back(seen.surface);
-        std::shuffle(views_.back().begin(), views_.back().end(), random);
+        views_.push_back(sketch_of(seen, T_cam_obj, model.radius_m, random));
         const auto depth = depth_picture(viewer.picture(), own.depth);
         for (auto& patch : find_surface_patches(depth, own, settings)) {
             to_model_frame(patch, T_cam_obj.inverse());

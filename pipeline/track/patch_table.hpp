@@ -7,7 +7,8 @@
 #include <Eigen/Geometry>
 
 #include "pipeline/features/surface_patch.hpp"
-#include "pipeline/track/model_view.hpp"
+#include "pipeline/track/object_model.hpp"
+#include "pipeline/track/pose_check.hpp"
 
 namespace kinectlab {
 
@@ -36,10 +37,8 @@ public:
         const SurfacePatch& patch, std::size_t most, double most_distance
     ) const;
 
-    /// Points of the surface seen in a view, any number of the first ones spread over it.
-    [[nodiscard]] const std::vector<ViewPoint>& view(std::uint32_t index) const {
-        return views_[index];
-    }
+    /// What the view showed, for checks of poses.
+    [[nodiscard]] const SketchView& view(std::uint32_t index) const { return views_[index]; }
     [[nodiscard]] std::size_t size() const { return patches_.size(); }
 
 private:
@@ -54,7 +53,7 @@ private:
     }
 
     std::vector<ModelPatch> patches_;
-    std::vector<std::vector<ViewPoint>> views_;
+    std::vector<SketchView> views_;
     std::vector<std::vector<std::uint32_t>> cells_;
 };
 

@@ -4,7 +4,7 @@
 #include <pcl/search/octree.h>
 #include <pcl/tracking/approx_nearest_pair_point_cloud_coherence.h>
 #include <pcl/tracking/distance_coherence.h>
-#include <pcl/tracking/kld_adaptive_particle_filter.h>
+#include <pcl/tracking/kld_adaptive_particle_filter_omp.h>
 
 namespace kinectlab::bench {
 namespace {
@@ -12,7 +12,8 @@ namespace {
 using Point = pcl::PointXYZ;
 using Cloud = pcl::PointCloud<Point>;
 using Particle = pcl::tracking::ParticleXYZRPY;
-using Filter = pcl::tracking::KLDAdaptiveParticleFilterTracker<Point, Particle>;
+// PCL 1.13 moves its particles in the OpenMP class alone: the other one never sees a change.
+using Filter = pcl::tracking::KLDAdaptiveParticleFilterOMPTracker<Point, Particle>;
 
 constexpr int kParticles = 600;
 constexpr double kMargin = 0.15;  // m, of the region around the object that is looked at
@@ -49,6 +50,7 @@ ParticleFilter::ParticleFilter(
 )
     : state_(std::make_unique<State>(camera, T_cam_obj)) {
     auto& filter = state_->filter;
+    filter.setNumberOfThreads(1);
     const std::vector<double> step = {
         0.015 * 0.015, 0.015 * 0.015, 0.015 * 0.015, 0.04 * 0.04, 0.04 * 0.04, 0.04 * 0.04};
     Particle bin;

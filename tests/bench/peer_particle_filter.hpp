@@ -10,9 +10,9 @@
 
 namespace kinectlab::bench {
 
-/// PCL's KLDAdaptiveParticleFilterTracker as in its tutorial: 600 particles, nearest-pair coherence
-/// by distance, the cloud cut to the region around the object and thinned to voxels of 5 mm, the
-/// reference a cloud of the object's surface.
+/// PCL's KLDAdaptiveParticleFilterOMPTracker as in its tutorial, on one thread: 600 particles,
+/// nearest-pair coherence by distance, every second pixel of each second row in the region around
+/// the object, the reference a cloud of what the first frame shows of it.
 class ParticleFilter {
 public:
     /// The object's surface as points about its centre, and where it is at first.
