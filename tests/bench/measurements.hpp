@@ -10,6 +10,7 @@ Figures measure_frame_to_pose();
 Figures measure_sphere_accuracy();
 Figures measure_shape_regions();
 Figures measure_shape_scene();
+Figures measure_labelled_scenes();
 Figures measure_outliers();
 Figures measure_moving_least_squares();
 Figures measure_normals();
@@ -38,6 +39,7 @@ inline constexpr std::array kMeasurements{
     Measurement{"sphere centre accuracy", measure_sphere_accuracy},
     Measurement{"sphere, cylinder, cone, region of interest", measure_shape_regions},
     Measurement{"whole scene, four kinds of shape", measure_shape_scene},
+    Measurement{"real labelled scenes, shapes", measure_labelled_scenes},
     Measurement{"outliers", measure_outliers},
     Measurement{"moving least squares", measure_moving_least_squares},
     Measurement{"normals", measure_normals},
