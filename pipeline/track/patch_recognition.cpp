@@ -11,7 +11,7 @@ constexpr double kMostPatchDistance = 0.5;  // χ²
 constexpr float kRoughScore = 0.1F;         // of a pose as it was proposed
 constexpr float kLeastScore = 0.3F;         // of one that was moved nearer
 constexpr std::size_t kSketches = 160;      // poses that are laid upon the picture
-constexpr double kPlainMerit = 0.93;        // nothing better is to be expected
+constexpr double kPlainMerit = 0.93;        // with an outline nothing better is to be expected
 constexpr std::size_t kFinals = 4;
 constexpr int kSketchRounds = 3;
 
@@ -84,25 +84,28 @@ void PatchRecogniser::propose(const SurfacePatch& patch) {
         consider(patch, *match);
 }
 
-std::vector<Eigen::Isometry3d> PatchRecogniser::distinct_best() const {
-    std::vector<Eigen::Isometry3d> chosen;
+std::vector<PatchRecogniser::Proposal> PatchRecogniser::distinct_best() const {
+    std::vector<Proposal> chosen;
     for (const auto& proposal : proposals_) {
-        const Eigen::Isometry3d T = proposal.T_cam_obj.cast<double>();
+        const Eigen::Isometry3f& T = proposal.T_cam_obj;
         const bool is_new = std::none_of(chosen.begin(), chosen.end(), [&](const auto& other) {
-            const double turned = std::acos(
-                std::clamp((T.linear() * other.linear().transpose()).trace() / 2.0 - 0.5, -1.0, 1.0)
-            );
-            return (T.translation() - other.translation()).norm() < 0.15 * model_->radius_m &&
-                   turned < 0.2;
+            const float cosine =
+                (T.linear() * other.T_cam_obj.linear().transpose()).trace() / 2.0F - 0.5F;
+            return (T.translation() - other.T_cam_obj.translation()).norm() <
+                       0.15F * static_cast<float>(model_->radius_m) &&
+                   std::acos(std::clamp(cosine, -1.0F, 1.0F)) < 0.2F;
         });
-        if (is_new) chosen.push_back(T);
+        if (is_new) chosen.push_back(proposal);
         if (chosen.size() == kSketches) break;
     }
     return chosen;
 }
 
-double PatchRecogniser::merit(const ModelFit& fit) const {
-    const double outline = model_->has_outline ? 0.5 + 0.5 * fit.outline_share : 1.0;
+/// A cloud has no outline of its own: there the rough check of what lies beside it has to do, or a
+/// flat face would fit on any wall.
+double PatchRecogniser::merit(const ModelFit& fit, float score) const {
+    const double outline =
+        0.5 + 0.5 * (model_->has_outline ? fit.outline_share : static_cast<double>(score));
     return fit.seen_share * fit.quality.inlier_share * fit.quality.inlier_share * outline;
 }
 
@@ -117,24 +120,34 @@ std::optional<ModelFit> PatchRecogniser::find(std::span<const std::uint16_t> dep
         [](const Proposal& a, const Proposal& b) { return a.score > b.score; }
     );
 
+    struct Sketch {
+        Eigen::Isometry3d T_cam_obj;
+        float score;
+        double merit;
+    };
     const ModelFitStart far{0.05, 0.5, 0.06};
-    std::vector<ModelFit> sketches;
-    for (const auto& T : distinct_best()) {
-        const auto fit = sketch_.fit(depth, *model_, T, far, kSketchRounds);
+    std::vector<Sketch> sketches;
+    for (const auto& proposal : distinct_best()) {
+        const auto fit =
+            sketch_.fit(depth, *model_, proposal.T_cam_obj.cast<double>(), far, kSketchRounds);
         if (!fit) continue;
-        sketches.push_back(*fit);
-        if (merit(*fit) > kPlainMerit) break;
+        sketches.push_back({fit->T_cam_obj, proposal.score, merit(*fit, proposal.score)});
+        if (model_->has_outline && sketches.back().merit > kPlainMerit) break;
     }
-    std::stable_sort(sketches.begin(), sketches.end(), [&](const ModelFit& a, const ModelFit& b) {
-        return merit(a) > merit(b);
+    std::stable_sort(sketches.begin(), sketches.end(), [](const Sketch& a, const Sketch& b) {
+        return a.merit > b.merit;
     });
     if (sketches.size() > kFinals) sketches.resize(kFinals);
 
     std::optional<ModelFit> best;
+    double most = 0.0;
     for (const auto& sketch : sketches) {
         const auto fit = fitter_.fit(depth, *model_, sketch.T_cam_obj, {}, 3);
-        if (fit && is_accepted(*fit, *model_, camera_, {}) && (!best || merit(*fit) > merit(*best)))
-            best = fit;
+        if (!fit || !is_accepted(*fit, *model_, camera_, {})) continue;
+        const double reached = merit(*fit, sketch.score);
+        if (best && reached <= most) continue;
+        best = fit;
+        most = reached;
     }
     return best;
 }

@@ -51,8 +51,8 @@ private:
 
     void propose(const SurfacePatch& patch);
     void consider(const SurfacePatch& patch, const ModelPatch& match);
-    [[nodiscard]] std::vector<Eigen::Isometry3d> distinct_best() const;
-    [[nodiscard]] double merit(const ModelFit& fit) const;
+    [[nodiscard]] std::vector<Proposal> distinct_best() const;
+    [[nodiscard]] double merit(const ModelFit& fit, float score) const;
 
     RgbdCamera camera_;
     std::shared_ptr<const ObjectModel> model_;

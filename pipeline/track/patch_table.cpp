@@ -107,9 +107,12 @@ PatchTable::PatchTable(
     const double distance_m = std::max(kTypicalDistance, kLeastRadii * model.radius_m);
     const RgbdCamera own = view_camera(camera, model.radius_m, distance_m);
     ModelViewer viewer(own.depth, {kPointsAView, kOutsideAView, 1'000'000});
+    // Where a cloud's scan ended the object may go on, but not all around it.
+    ObjectModel outlined = model;
+    outlined.has_outline = true;
     for (const auto& direction : view_directions()) {
         const Eigen::Isometry3d T_cam_obj = look_along(direction, distance_m);
-        const ModelView& seen = viewer.look(model, T_cam_obj);
+        const ModelView& seen = viewer.look(outlined, T_cam_obj);
         views_.push_back(sketch_of(seen, T_cam_obj, model.radius_m, random));
         const auto depth = depth_picture(viewer.picture(), own.depth);
         for (auto& patch : find_surface_patches(depth, own, settings)) {
