@@ -47,6 +47,7 @@ private:
     struct Proposal {
         Eigen::Isometry3f T_cam_obj;
         float score;
+        std::uint32_t view;
     };
 
     void propose(const SurfacePatch& patch);

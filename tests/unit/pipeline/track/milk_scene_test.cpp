@@ -69,6 +69,17 @@ TEST_F(MilkScene, TheTruePoseLaysTheModelOnTheReadings) {
     EXPECT_GT(on, mesh_.vertices.size() * 98 / 100);
 }
 
+TEST_F(MilkScene, TheCartonIsNotFoundAmongOtherBoxesAndTins) {
+    for (const char* name : {"osd_test0.pcd", "osd_test36.pcd"}) {
+        auto source = open_pcd_sequence(pcl_folder() / name);
+        ASSERT_TRUE(source.has_value()) << to_text(source.error());
+        RgbdFrame frame;
+        ASSERT_TRUE((*source)->next(frame, std::chrono::milliseconds(0)).has_value());
+        PatchRecogniser recogniser((*source)->info().camera, model_, 1);
+        EXPECT_FALSE(recogniser.find(frame.depth).has_value()) << name;
+    }
+}
+
 /// Its parameter is the first of five seeds: twenty in one test would take one core for minutes.
 class MilkSceneSeeds : public MilkScene, public testing::WithParamInterface<std::uint32_t> {};
 
