@@ -2,6 +2,7 @@
 #include <nlohmann/json.hpp>
 
 #include "pipeline/analysis/pendulum.hpp"
+#include "pipeline/sensor/file_bytes.hpp"
 #include "server/commands/arguments.hpp"
 #include "server/commands/commands.hpp"
 #include "server/commands/fit_csv.hpp"
@@ -13,17 +14,27 @@
 #include "server/experiments/definition.hpp"
 #include "server/experiments/recorded_settings.hpp"
 #include "server/experiments/result_json.hpp"
+#include "server/experiments/trajectory_table.hpp"
 
 namespace kinectlab::commands {
 namespace {
 
 using experiments::Values;
 
+constexpr std::size_t kMostTableBytes = 256U << 20U;
+
 struct Arguments {
     std::string experiment;
     std::string recording;
     std::string out;
+    std::string columns, units;
     std::vector<std::string> settings;
+};
+
+/// What an analysis starts from, wherever it came from.
+struct Material {
+    std::vector<Trajectory> trajectories;  ///< the pendulum's first
+    experiments::Provenance provenance;    ///< but for what the fit adds
 };
 
 std::optional<int> parse(int argc, char** argv, Arguments& arguments) {
@@ -34,8 +45,21 @@ std::optional<int> parse(int argc, char** argv, Arguments& arguments) {
     );
     app.add_option("EXPERIMENT", arguments.experiment, "what was recorded, e.g. pendulum")
         ->required();
-    app.add_option("RECORDING", arguments.recording, "folder in the TUM layout, .pcd or .oni")
+    app.add_option(
+           "RECORDING",
+           arguments.recording,
+           "folder in the TUM layout, .pcd or .oni; or a table of positions, .csv, .tsv or .txt"
+    )
         ->required();
+    app.add_option(
+        "--columns",
+        arguments.columns,
+        "of a table: heads or numbers of its columns, such as t=Time,x=X,y=Y or t=1,x=2,y=3,z=4. "
+        "With z it goes up, without it y does"
+    );
+    app.add_option(
+        "--units", arguments.units, "of a table, such as cm or t=ms,x=cm,y=cm; else s and m"
+    );
     app.add_option(
            "--set",
            arguments.settings,
@@ -54,35 +78,66 @@ bool on_earth(const Values& truth) {
     return gravity == truth.end() || is_earthly(gravity->second);
 }
 
-PendulumSettings pendulum_settings(const Values& values, const RgbdCamera& camera) {
+PendulumSettings pendulum_settings(const Values& values, const std::optional<RgbdCamera>& camera) {
     PendulumSettings settings;
     settings.length_m = values.at("length_m");
     settings.length_u_m = values.at("length_u_m");
     settings.bob_radius_m = values.at("bob_radius_m");
     settings.latitude_deg = values.at("latitude_deg");
-    settings.depth_scale_u = camera.depth_scale_u;
-    settings.clock_u = camera.clock_u;
+    if (camera) {
+        settings.depth_scale_u = camera->depth_scale_u;
+        settings.clock_u = camera->clock_u;
+    }
     return settings;
 }
 
-experiments::Provenance provenance_of(
-    const TrackedRecording& recording, const Trajectory& trajectory, const PendulumFit& fit
-) {
-    experiments::Provenance p;
-    p.program_version = config::version();
-    p.source = recording.source.name;
-    p.camera = recording.source.camera;
-    p.T_lab_cam = lab_pose_of(recording.source);
-    p.lab_frame_assumed = !recording.source.T_lab_cam.has_value();
-    p.first_frame = recording.frames.front();
-    p.last_frame = recording.frames.back();
-    p.frames = recording.frames.size();
+std::size_t tracked_in(const Trajectory& trajectory) {
+    std::size_t tracked = 0;
     for (const auto& sample : trajectory.samples)
-        p.frames_tracked += sample.status == TrackStatus::tracked ? 1 : 0;
-    p.samples_used = static_cast<std::size_t>(fit.used);
-    p.outliers = static_cast<std::size_t>(fit.outliers);
-    p.reduced_chi2 = fit.reduced_chi2;
-    return p;
+        tracked += sample.status == TrackStatus::tracked ? 1 : 0;
+    return tracked;
+}
+
+Result<Material> from_recording(
+    const std::string& path, const experiments::Definition& definition, const Values& values
+) {
+    const auto recording = track_recording(path, experiments::plan_for(definition, values));
+    if (!recording) return tl::unexpected(recording.error());
+    Material material{trajectories_of(*recording), {}};
+    auto& p = material.provenance;
+    p.source = recording->source.name;
+    p.camera = recording->source.camera;
+    p.T_lab_cam = lab_pose_of(recording->source);
+    p.lab_frame_assumed = !recording->source.T_lab_cam.has_value();
+    p.first_frame = recording->frames.front();
+    p.last_frame = recording->frames.back();
+    p.frames = recording->frames.size();
+    p.frames_tracked = tracked_in(material.trajectories.front());
+    return material;
+}
+
+bool is_table(const std::filesystem::path& path) {
+    const auto ending = path.extension();
+    return ending == ".csv" || ending == ".tsv" || ending == ".txt";
+}
+
+Result<Material> from_table(
+    const std::filesystem::path& path, const experiments::TableLayout& layout
+) {
+    std::vector<std::uint8_t> bytes;
+    if (auto ok = read_file(path, kMostTableBytes, bytes); !ok) return tl::unexpected(ok.error());
+    const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+    auto trajectory = experiments::read_trajectory_table(text, layout, path.filename().string());
+    if (!trajectory) return tl::unexpected(trajectory.error());
+    Material material{{std::move(*trajectory)}, {}};
+    const auto& samples = material.trajectories.front().samples;
+    auto& p = material.provenance;
+    p.source = path.filename().string();
+    p.first_frame = samples.front().t;
+    p.last_frame = samples.back().t;
+    p.frames = samples.size();
+    p.frames_tracked = tracked_in(material.trajectories.front());
+    return material;
 }
 
 Result<void> write_files(
@@ -115,33 +170,47 @@ int analyse(int argc, char** argv) {
     if (!definition) return report_usage(definition.error());
     const auto given = parse_settings(arguments.settings);
     if (!given) return report_usage(given.error());
+    const auto layout = experiments::parse_table_layout(arguments.columns, arguments.units);
+    if (!layout) return report_usage(layout.error());
+    if (!is_table(arguments.recording) && *layout != experiments::TableLayout{})
+        return report_usage(
+            {ErrorCode::invalid_argument,
+             arguments.columns.empty() ? "--units" : "--columns",
+             "says how to read a table, but " + arguments.recording + " is none",
+             "leave it away, or give a .csv, .tsv or .txt file"}
+        );
+    const auto kind = is_table(arguments.recording) ? experiments::RigKind::elsewhere
+                                                    : experiments::RigKind::real;
     // What was given is checked before a long recording is read.
-    const auto checked = experiments::validate(*definition, *given, experiments::RigKind::real);
+    const auto checked = experiments::validate(*definition, *given, kind);
     if (!checked) return report_usage(checked.error());
     const auto values =
-        experiments::with_recorded_settings(*definition, *given, arguments.recording);
+        is_table(arguments.recording)
+            ? checked
+            : experiments::with_recorded_settings(*definition, *given, arguments.recording);
     if (!values) return report(values.error());
 
-    const auto recording =
-        track_recording(arguments.recording, experiments::plan_for(*definition, *values));
-    if (!recording) return report(recording.error());
-    const auto trajectories = trajectories_of(*recording);
-    PendulumSettings settings = pendulum_settings(*values, recording->source.camera);
+    auto material = is_table(arguments.recording)
+                        ? from_table(arguments.recording, *layout)
+                        : from_recording(arguments.recording, *definition, *values);
+    if (!material) return report(material.error());
+    auto& provenance = material->provenance;
+    PendulumSettings settings = pendulum_settings(*values, provenance.camera);
     settings.on_earth = on_earth(experiments::recorded_truth(*definition, arguments.recording));
-    const auto measured = analyse_pendulum(trajectories.front(), settings);
+    const auto measured = analyse_pendulum(material->trajectories.front(), settings);
     if (!measured) {
         static_cast<void>(report(measured.error()));
         return kFailed;
     }
+    provenance.program_version = config::version();
+    provenance.samples_used = static_cast<std::size_t>(measured->fit.used);
+    provenance.outliers = static_cast<std::size_t>(measured->fit.outliers);
+    provenance.reduced_chi2 = measured->fit.reduced_chi2;
     const auto result = experiments::result_to_json(
-        definition->id,
-        *values,
-        measured->measurements,
-        measured->warnings,
-        provenance_of(*recording, trajectories.front(), measured->fit)
+        definition->id, *values, measured->measurements, measured->warnings, provenance
     );
     if (!arguments.out.empty()) {
-        auto written = write_files(arguments.out, result, trajectories, measured->fit);
+        auto written = write_files(arguments.out, result, material->trajectories, measured->fit);
         if (!written) return report(written.error());
     }
     print_json(result);

@@ -4,6 +4,7 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <limits>
 
 #include "pipeline/core/nearest_name.hpp"
 
@@ -54,11 +55,19 @@ Result<Values> validate(const Definition& definition, const Values& given, RigKi
                 name, "is not a parameter of " + definition.id, "did you mean " + nearest + "?"
             );
         }
-        if (rig == RigKind::real && parameter->simulation_only) {
+        if (rig != RigKind::simulated && parameter->simulation_only) {
             return wrong(name, "can only be set in a simulation", "leave it out");
         }
-        const bool inside = value >= parameter->min && value <= parameter->max;  // false for NaN
-        if (!inside) return wrong(name, "is " + to_text(value), range_of(*parameter));
+        const bool any = rig == RigKind::elsewhere && parameter->min >= 0.0;
+        const double least = any ? 0.0 : parameter->min;
+        const double most = any ? std::numeric_limits<double>::max() : parameter->max;
+        const bool inside = value >= least && value <= most;  // false for NaN
+        if (!inside)
+            return wrong(
+                name,
+                "is " + to_text(value),
+                any ? "give a number that is not negative" : range_of(*parameter)
+            );
     }
     Values values;
     for (const auto& name : names_of(definition, rig)) {

@@ -45,10 +45,11 @@ using Values = std::map<std::string, double>;
 
 /// What kind of rig the values are for; parameters that only a simulation has are refused for a
 /// real one, and left out of its values.
-enum class RigKind { simulated, real };
+enum class RigKind { simulated, real, elsewhere };
 
 /// The values of all parameters: those given, the others by default. Errors name the parameter:
-/// unknown (with the nearest valid name), out of range, NaN, or not to be set on a real rig.
+/// unknown (with the nearest valid name), out of range, NaN, or not to be set on a real rig. What
+/// moved elsewhere is not bound to a rig's ranges: what cannot be negative has any value from 0.
 [[nodiscard]] Result<Values> validate(
     const Definition& definition, const Values& given, RigKind rig = RigKind::simulated
 );

@@ -29,7 +29,7 @@ json to_json(const Provenance& p) {
         {"program", "kinectlab"},
         {"version", p.program_version},
         {"source", p.source},
-        {"camera", experiments::to_json(p.camera)},
+        {"camera", p.camera ? experiments::to_json(*p.camera) : json()},
         {"lab_frame", p.lab_frame_assumed ? "assumed: level camera that looks along y" : "known"},
         {"first_frame_ns", p.first_frame},
         {"last_frame_ns", p.last_frame},

@@ -17,7 +17,7 @@ namespace kinectlab::experiments {
 struct Provenance {
     std::string program_version;
     std::string source;  ///< the recording, or the rig and run
-    RgbdCamera camera;
+    std::optional<RgbdCamera> camera;  ///< none of a table that another program wrote
     std::optional<Eigen::Isometry3d> T_lab_cam;
     bool lab_frame_assumed = false;  ///< nothing said where the camera stands: taken to be level
     TimeNs first_frame = 0;

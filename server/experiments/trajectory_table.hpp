@@ -1,0 +1,42 @@
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "pipeline/core/error.hpp"
+#include "pipeline/core/trajectory.hpp"
+
+namespace kinectlab::experiments {
+
+/// Which columns of a table hold what, and in which units.
+struct TableLayout {
+    /// Of t, x, y, z: a column's name as its head says it, or its number from 1; empty: the one
+    /// that is called so. Without z the motion is two-dimensional.
+    std::array<std::string, 4> column;
+    std::array<double, 4> scale{1.0, 1.0, 1.0, 1.0};  ///< to s and m
+
+    bool operator==(const TableLayout&) const = default;
+};
+
+/// "t=Time,x=X,y=Y" or "t=1,x=2,y=3" and "t=ms,x=cm,y=cm", or one unit of length for all; both may
+/// be empty. Errors name --columns or --units: a column of no known meaning or given twice, a unit
+/// other than s, ms, m, cm, mm.
+[[nodiscard]] Result<TableLayout> parse_table_layout(
+    std::string_view columns, std::string_view units
+);
+
+/// Positions that another program wrote, e.g. Tracker, phyphox or a logger. Cells are separated by
+/// tab, semicolon, comma or spaces; numbers have a point or, where the comma separates nothing, a
+/// comma. Lines before the first row of numbers are its head; lines with # are passed over. Of two
+/// dimensions x goes to the right and y up, and the motion is taken to stay within 5 mm of that
+/// plane; of three z goes up. An empty cell or NaN makes the row a gap. The positions' uncertainty
+/// is what they scatter about a smooth path, at least 10 µm.
+/// Errors (bad_data, with the line): no such column, what is no number, times that do not increase,
+/// fewer than 8 rows, more than 2,000,000.
+[[nodiscard]] Result<Trajectory> read_trajectory_table(
+    std::string_view text, const TableLayout& layout, const std::string& name
+);
+
+}  // namespace kinectlab::experiments
