@@ -16,7 +16,7 @@ namespace kinectlab::experiments {
 /// What a result rests on, so that it can be judged and made again.
 struct Provenance {
     std::string program_version;
-    std::string source;  ///< the recording, or the rig and run
+    std::string source;                ///< the recording, or the rig and run
     std::optional<RgbdCamera> camera;  ///< none of a table that another program wrote
     std::optional<Eigen::Isometry3d> T_lab_cam;
     bool lab_frame_assumed = false;  ///< nothing said where the camera stands: taken to be level

@@ -100,7 +100,7 @@ Dialect dialect_of(std::string_view line) {
 }
 
 std::string bare_name(std::string_view head) {
-    const auto unit = head.find_first_of("([");
+    const auto unit = std::min(head.find('('), head.find('['));
     std::string name(trimmed(head.substr(0, unit)));
     std::transform(name.begin(), name.end(), name.begin(), [](unsigned char c) {
         return static_cast<char>(std::tolower(c));
