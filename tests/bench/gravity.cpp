@@ -11,7 +11,7 @@
 namespace kinectlab::bench {
 namespace {
 
-constexpr int kSeeds = 20;
+constexpr int kSeeds = 60;
 
 struct Run {
     double error = 0.0;  // of g, m/s²
