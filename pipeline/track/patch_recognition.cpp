@@ -14,6 +14,7 @@ constexpr std::size_t kSketches = 160;      // poses that are laid upon the pict
 constexpr double kPlainMerit = 0.93;        // with an outline nothing better is to be expected
 // Cartons of other sizes reach 0.78 with a carton's cloud, itself 0.86.
 constexpr double kLeastMeritOfCloud = 0.82;
+constexpr double kMostNoiseRadii = 0.03;
 constexpr std::size_t kFinals = 4;
 constexpr int kSketchRounds = 3;
 
@@ -111,6 +112,14 @@ double PatchRecogniser::merit(const ModelFit& fit, float score) const {
     return fit.seen_share * fit.quality.inlier_share * fit.quality.inlier_share * outline;
 }
 
+/// Whether the noise at that distance hides what tells a cloud from any flat thing of its size.
+bool PatchRecogniser::is_blurred(double z_m) const {
+    const DisparityScale scale(camera_);
+    const double sigma_m =
+        scale.sigma_at(scale.steps_at(z_m)) * scale.inverse_depth_step * z_m * z_m;
+    return sigma_m > kMostNoiseRadii * model_->radius_m;
+}
+
 std::optional<ModelFit> PatchRecogniser::find(std::span<const std::uint16_t> depth) {
     check_.set(depth);
     proposals_.clear();
@@ -151,7 +160,9 @@ std::optional<ModelFit> PatchRecogniser::find(std::span<const std::uint16_t> dep
         if (!fit || !is_accepted(*fit, *model_, camera_, {})) continue;
         const float score = check_.score(fit->T_cam_obj.cast<float>(), table_.view(sketch.view));
         const double reached = merit(*fit, score);
-        if (!model_->has_outline && reached < kLeastMeritOfCloud) continue;
+        if (!model_->has_outline &&
+            (reached < kLeastMeritOfCloud || is_blurred(fit->T_cam_obj.translation().z())))
+            continue;
         if (best && reached <= most) continue;
         best = fit;
         most = reached;

@@ -53,6 +53,7 @@ private:
     void propose(const SurfacePatch& patch);
     void consider(const SurfacePatch& patch, const ModelPatch& match);
     [[nodiscard]] std::vector<Proposal> distinct_best() const;
+    [[nodiscard]] bool is_blurred(double z_m) const;
     [[nodiscard]] double merit(const ModelFit& fit, float score) const;
 
     RgbdCamera camera_;
