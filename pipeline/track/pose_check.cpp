@@ -58,7 +58,8 @@ float PoseCheck::score(const Eigen::Isometry3f& T_cam_obj, const SketchView& vie
     for (const auto& point : view.surface) {
         const Eigen::Vector3f p = T_cam_obj * point.p_obj;
         if (p.dot(T_cam_obj.linear() * point.n_obj) > 0.0F) continue;  // turned away in this pose
-        if (++seen == kFirstLook && static_cast<float>(sum) < kFirstScore * kFirstLook) break;
+        if (++seen == kFirstLook && static_cast<float>(sum) < kFirstScore * kFirstLook)
+            return static_cast<float>(sum) / kFirstLook;
         const float z = reading_at(p);
         if (z < 0.0F) continue;
         const float off = z - p.z();
@@ -68,9 +69,8 @@ float PoseCheck::score(const Eigen::Isometry3f& T_cam_obj, const SketchView& vie
     // Of a pose that shows little of the view little is known.
     const auto known =
         std::max(static_cast<float>(seen), kLeastKnown * static_cast<float>(view.surface.size()));
-    const float on =
-        static_cast<float>(sum) / (seen == kFirstLook ? static_cast<float>(seen) : known);
-    if (seen == kFirstLook || view.outside.empty()) return on;
+    const float on = static_cast<float>(sum) / known;
+    if (view.outside.empty()) return on;
     int goes_on = 0;
     for (const auto& point : view.outside) {
         const Eigen::Vector3f p = T_cam_obj * point;

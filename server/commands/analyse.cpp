@@ -133,6 +133,7 @@ Result<Material> from_table(
     const auto& samples = material.trajectories.front().samples;
     auto& p = material.provenance;
     p.source = path.filename().string();
+    p.lab_frame_assumed = true;
     p.first_frame = samples.front().t;
     p.last_frame = samples.back().t;
     p.frames = samples.size();

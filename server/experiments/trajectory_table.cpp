@@ -69,7 +69,9 @@ std::optional<double> number_in(std::string_view cell, bool decimal_comma) {
         return std::numeric_limits<double>::quiet_NaN();
     std::string plain(cell.front() == '+' ? cell.substr(1) : cell);
     if (decimal_comma) {
-        if (plain.find('.') != plain.npos) return std::nullopt;
+        const auto comma = plain.find(',');
+        const bool both = comma != plain.npos && plain.find('.') != plain.npos;
+        if (both || plain.back() == ',') return std::nullopt;
         std::replace(plain.begin(), plain.end(), ',', '.');
     }
     double value = 0.0;
@@ -81,15 +83,14 @@ std::optional<double> number_in(std::string_view cell, bool decimal_comma) {
 
 struct Dialect {
     char separator = ',';
-    bool decimal_comma = false;
+    bool decimal_comma = false;  ///< may stand: the comma separates nothing
 };
 
 /// As the last line has it: heads and remarks stand at the top.
 Dialect dialect_of(std::string_view line) {
     for (const char separator : {'\t', ';'})
-        if (line.find(separator) != line.npos)
-            return {separator, line.find(',') != line.npos && line.find('.') == line.npos};
-    if (line.find(',') == line.npos) return {' ', false};
+        if (line.find(separator) != line.npos) return {separator, true};
+    if (line.find(',') == line.npos) return {' ', true};
     // "0,1 2,5" has decimal commas, "0.1, 2.5" has not.
     std::vector<std::string_view> cells;
     split(line, ' ', cells);

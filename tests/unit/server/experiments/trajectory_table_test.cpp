@@ -113,6 +113,19 @@ TEST(TrajectoryTable, GivesGWithAnUncertaintyThatItsNoiseExplains) {
     EXPECT_LT(g.u, 5e-3);
 }
 
+TEST(TrajectoryTable, TheLastRowMayBeOfWholeNumbers) {
+    for (const char* last : {"9;2;3\n", "9;;\n"}) {
+        std::string text = "t;x;y\n";
+        for (int i = 0; i < 9; ++i)
+            text += fmt::format("{},5;2,5;3,5\n", i);
+        EXPECT_EQ(read(text + last).samples[0].p_lab.x(), 2.5);
+    }
+    std::string text = "t, x, y\n";
+    for (int i = 0; i < 9; ++i)
+        text += fmt::format("{}.5, 2.5, 3.5\n", i);
+    EXPECT_EQ(read(text + "9, 2, 3\n").samples[0].p_lab.x(), 2.5);
+}
+
 TEST(TrajectoryTable, ThreeDimensionsAndGaps) {
     std::string text = "t,x,y,z\n";
     for (int i = 0; i < 12; ++i)
