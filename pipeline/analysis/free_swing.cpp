@@ -18,7 +18,7 @@ struct Walk {
 /// Looks at the samples that `at` names one after the other, `count` of them.
 template <class Index>
 Walk walk(
-    std::span<const SwingSample> samples,
+    std::span<const PositionSample> samples,
     Index at,
     std::size_t count,
     std::size_t block,
@@ -36,7 +36,7 @@ Walk walk(
         const std::size_t stop = std::min(next + block, count);
         std::vector<double> off;
         for (; next < stop; ++next) {
-            const SwingSample& sample = samples[at(next)];
+            const PositionSample& sample = samples[at(next)];
             path.go_to(sample.t - t0);
             const Eigen::Vector3d r = sample.p_lab - path.position();
             off.push_back(
@@ -56,7 +56,7 @@ Walk walk(
 }  // namespace
 
 FreeSwing grow_free_swing(
-    std::span<const SwingSample> samples,
+    std::span<const PositionSample> samples,
     FreeSwing known,
     const SwingParameters& parameters,
     double period,

@@ -2,8 +2,8 @@
 
 #include <span>
 
+#include "pipeline/analysis/position_samples.hpp"
 #include "pipeline/analysis/swing_model.hpp"
-#include "pipeline/analysis/swing_samples.hpp"
 
 namespace kinectlab {
 
@@ -27,7 +27,7 @@ struct PathTolerance {
 /// off the path the swing was not free; half a period is left out there, because the bob may have
 /// been held in the last quarter period that still looked right.
 [[nodiscard]] FreeSwing grow_free_swing(
-    std::span<const SwingSample> samples,
+    std::span<const PositionSample> samples,
     FreeSwing known,
     const SwingParameters& parameters,
     double period,

@@ -13,7 +13,7 @@ constexpr int kMostSteps = 40;
 
 /// Cost and, where asked for, its derivatives.
 NormalEquations evaluate(
-    std::span<const SwingSample> samples,
+    std::span<const PositionSample> samples,
     const SwingParameters& parameters,
     const SwingWeights& weights
 ) {
@@ -43,7 +43,7 @@ bool plausible(const SwingParameters& p) {
 }  // namespace
 
 std::vector<Eigen::Vector3d> swing_residuals(
-    std::span<const SwingSample> samples, const SwingParameters& parameters
+    std::span<const PositionSample> samples, const SwingParameters& parameters
 ) {
     std::vector<Eigen::Vector3d> residuals;
     residuals.reserve(samples.size());
@@ -56,7 +56,7 @@ std::vector<Eigen::Vector3d> swing_residuals(
 }
 
 NormalEquations linearise(
-    std::span<const SwingSample> samples,
+    std::span<const PositionSample> samples,
     const SwingParameters& parameters,
     const SwingWeights& weights
 ) {
@@ -91,7 +91,7 @@ SwingMatrix inverse_information(const SwingMatrix& information, int fixed) {
 }
 
 SwingParameters minimise(
-    std::span<const SwingSample> samples,
+    std::span<const PositionSample> samples,
     SwingParameters start,
     const SwingWeights& weights,
     const SwingPriors& priors,

@@ -3,8 +3,8 @@
 #include <span>
 #include <vector>
 
+#include "pipeline/analysis/position_samples.hpp"
 #include "pipeline/analysis/swing_model.hpp"
-#include "pipeline/analysis/swing_samples.hpp"
 
 namespace kinectlab {
 
@@ -32,11 +32,11 @@ struct NormalEquations {
 
 /// Residuals measured minus fitted, m. Time 0 is that of the first sample.
 [[nodiscard]] std::vector<Eigen::Vector3d> swing_residuals(
-    std::span<const SwingSample> samples, const SwingParameters& parameters
+    std::span<const PositionSample> samples, const SwingParameters& parameters
 );
 
 [[nodiscard]] NormalEquations linearise(
-    std::span<const SwingSample> samples,
+    std::span<const PositionSample> samples,
     const SwingParameters& parameters,
     const SwingWeights& weights
 );
@@ -55,7 +55,7 @@ struct NormalEquations {
 /// Levenberg-Marquardt with Marquardt's scaling; the Earth's turning stays fixed. Ends when the
 /// next step would be shorter than `tolerance` standard deviations.
 [[nodiscard]] SwingParameters minimise(
-    std::span<const SwingSample> samples,
+    std::span<const PositionSample> samples,
     SwingParameters start,
     const SwingWeights& weights,
     const SwingPriors& priors,

@@ -5,10 +5,10 @@
 
 #include <fmt/format.h>
 
+#include "pipeline/analysis/position_samples.hpp"
 #include "pipeline/analysis/swing_fit.hpp"
 #include "pipeline/analysis/swing_guess.hpp"
 #include "pipeline/analysis/swing_measurements.hpp"
-#include "pipeline/analysis/swing_samples.hpp"
 #include "pipeline/analysis/swing_warnings.hpp"
 
 namespace kinectlab {
@@ -37,7 +37,7 @@ Result<void> check(const PendulumSettings& s) {
 // A swing that is seen on one side only looks like one of half the period with every other one
 // hidden.
 Result<void> check_sides(
-    const std::vector<SwingSample>& samples, const SwingFit& fit, double period
+    const std::vector<PositionSample>& samples, const SwingFit& fit, double period
 ) {
     std::size_t hidden = 0;
     for (std::size_t i = fit.begin + 1; i < fit.end; ++i)
@@ -54,11 +54,12 @@ Result<void> check_sides(
     );
 }
 
-PendulumFit for_plots(
-    const Trajectory& trajectory, const std::vector<SwingSample>& samples, const SwingFit& fit
+ObjectFit for_plots(
+    const Trajectory& trajectory, const std::vector<PositionSample>& samples, const SwingFit& fit
 ) {
     constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-    PendulumFit plot;
+    ObjectFit plot;
+    plot.object = trajectory.object;
     const std::size_t first = samples[fit.begin].index;
     const std::size_t last = samples[fit.end - 1].index;
     SwingPath path(fit.parameters);
@@ -88,7 +89,7 @@ Result<PendulumResult> analyse_pendulum(
     const Trajectory& trajectory, const PendulumSettings& settings
 ) {
     if (auto ok = check(settings); !ok) return tl::unexpected(ok.error());
-    const auto samples = collect_swing_samples(trajectory);
+    const auto samples = collect_position_samples(trajectory);
     if (!samples) return tl::unexpected(samples.error());
     auto guess = guess_swing(*samples, settings.length_m);
     if (!guess) return tl::unexpected(guess.error());

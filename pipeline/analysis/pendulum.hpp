@@ -3,6 +3,7 @@
 #include <optional>
 #include <vector>
 
+#include "pipeline/analysis/analysis.hpp"
 #include "pipeline/core/error.hpp"
 #include "pipeline/core/measurement.hpp"
 #include "pipeline/core/trajectory.hpp"
@@ -27,22 +28,11 @@ struct PendulumSettings {
     bool on_earth = true;         ///< false where a simulation took another g on purpose
 };
 
-/// The fitted motion at the samples' times, for plots.
-struct PendulumFit {
-    std::vector<TimeNs> t;
-    std::vector<Eigen::Vector3d> p_lab;     ///< m; NaN where the sample was not measured
-    std::vector<Eigen::Vector3d> fit_lab;   ///< m
-    std::vector<Eigen::Vector3d> residual;  ///< measured minus fitted, m
-    int used = 0;                           ///< samples that the fit rests on
-    int outliers = 0;                       ///< samples that it weighted down to next to nothing
-    double reduced_chi2 = 0.0;
-};
-
 struct PendulumResult {
     /// g (m/s²), period (s, as swung), small_angle_period (s), amplitude (rad, at the start),
     /// damping (1/s), and what else the fit knows.
     std::vector<Measurement> measurements;
-    PendulumFit fit;
+    ObjectFit fit;
     std::vector<std::string> warnings;  ///< for a student: what makes this run less good
 };
 

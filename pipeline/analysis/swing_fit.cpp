@@ -22,7 +22,7 @@ constexpr double kMedianChi2 = 2.366;  // of three degrees of freedom
 constexpr double kSmallestNoise =
     1e-6;  // share of the given variance below which residuals are rounding
 
-using Samples = std::span<const SwingSample>;
+using Samples = std::span<const PositionSample>;
 using Residuals = std::vector<Eigen::Vector3d>;
 
 std::vector<double> distances(
@@ -191,7 +191,7 @@ double energy_angle(const SwingParameters& p) {
 }
 
 Result<SwingFit> fit_swing(
-    std::span<const SwingSample> all, const SwingGuess& guess, const SwingPriors& priors
+    std::span<const PositionSample> all, const SwingGuess& guess, const SwingPriors& priors
 ) {
     FreeSwing range;
     auto followed = follow_free_swing(all, guess, priors, range);

@@ -4,9 +4,9 @@
 #include <vector>
 
 #include "pipeline/analysis/least_squares.hpp"
+#include "pipeline/analysis/position_samples.hpp"
 #include "pipeline/analysis/swing_guess.hpp"
 #include "pipeline/analysis/swing_model.hpp"
-#include "pipeline/analysis/swing_samples.hpp"
 
 namespace kinectlab {
 
@@ -37,7 +37,7 @@ struct SwingFit {
 /// Errors (bad_data): less than three periods of free swing, motion that the equation cannot
 /// follow, amplitude beyond 80°.
 [[nodiscard]] Result<SwingFit> fit_swing(
-    std::span<const SwingSample> samples, const SwingGuess& guess, const SwingPriors& priors
+    std::span<const PositionSample> samples, const SwingGuess& guess, const SwingPriors& priors
 );
 
 /// The largest angle from the plumb line that the bob would reach from the parameters' time 0 on

@@ -25,7 +25,7 @@ struct Sine {
 };
 
 /// A sine whose amplitude and phase drift, fitted with wild samples weighted down.
-Sine fit_sine(std::span<const SwingSample> samples, double f, const Eigen::Vector2d& weights) {
+Sine fit_sine(std::span<const PositionSample> samples, double f, const Eigen::Vector2d& weights) {
     const auto n = static_cast<Eigen::Index>(samples.size());
     const double half = (samples.back().t - samples.front().t) / 2.0;
     Eigen::Matrix<double, Eigen::Dynamic, 5> basis(n, 5);
@@ -68,7 +68,7 @@ struct Window {
 };
 
 /// Of all windows of three periods, half a period apart, the one most like a sine.
-Window best_window(std::span<const SwingSample> samples, double f) {
+Window best_window(std::span<const PositionSample> samples, double f) {
     const Eigen::Vector2d weights = axis_weights(samples);
     const double length_s = kFewestPeriods / f;
     Window best;
@@ -90,7 +90,7 @@ Window best_window(std::span<const SwingSample> samples, double f) {
 }
 
 SwingParameters to_parameters(
-    std::span<const SwingSample> samples, const Sine& sine, double length_m, double f
+    std::span<const PositionSample> samples, const Sine& sine, double length_m, double f
 ) {
     SwingParameters p;
     p.radius = length_m;
@@ -113,7 +113,7 @@ SwingParameters to_parameters(
 
 }  // namespace
 
-Result<SwingGuess> guess_swing(std::span<const SwingSample> samples, double length_m) {
+Result<SwingGuess> guess_swing(std::span<const PositionSample> samples, double length_m) {
     const auto f = find_frequency(samples, length_m);
     if (!f)
         return fail(

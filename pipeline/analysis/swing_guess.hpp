@@ -2,8 +2,8 @@
 
 #include <span>
 
+#include "pipeline/analysis/position_samples.hpp"
 #include "pipeline/analysis/swing_model.hpp"
-#include "pipeline/analysis/swing_samples.hpp"
 
 namespace kinectlab {
 
@@ -19,6 +19,8 @@ struct SwingGuess {
 /// mislead, and the three periods that look most like a sine.
 /// Errors (bad_data): no motion beyond noise, less than three periods, nothing like a swing, a bob
 /// farther than sin 80° of the length from the middle.
-[[nodiscard]] Result<SwingGuess> guess_swing(std::span<const SwingSample> samples, double length_m);
+[[nodiscard]] Result<SwingGuess> guess_swing(
+    std::span<const PositionSample> samples, double length_m
+);
 
 }  // namespace kinectlab

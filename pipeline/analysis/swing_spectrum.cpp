@@ -20,7 +20,7 @@ constexpr double kClearPeak =
     60.0;  // times the noise; the best of a few hundred peaks of noise: 20
 
 /// x and y about their middle, weighted, with wild values pulled in.
-PlanePath clipped(std::span<const SwingSample> samples) {
+PlanePath clipped(std::span<const PositionSample> samples) {
     std::vector<double> x, y, distance;
     for (const auto& s : samples) {
         x.push_back(s.p_lab.x());
@@ -42,7 +42,7 @@ PlanePath clipped(std::span<const SwingSample> samples) {
 }
 
 /// How much of the sum of squares about the mean a sine of frequency f explains.
-double explained(std::span<const SwingSample> samples, const PlanePath& xy, double f) {
+double explained(std::span<const PositionSample> samples, const PlanePath& xy, double f) {
     Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
     Eigen::Matrix<double, 3, 2> right = Eigen::Matrix<double, 3, 2>::Zero();
     Eigen::Index i = 0;
@@ -56,9 +56,9 @@ double explained(std::span<const SwingSample> samples, const PlanePath& xy, doub
            xy.colwise().sum().squaredNorm() / static_cast<double>(samples.size());
 }
 
-std::span<const SwingSample> liveliest(std::span<const SwingSample> samples) {
+std::span<const PositionSample> liveliest(std::span<const PositionSample> samples) {
     if (samples.back().t - samples.front().t <= kSpan) return samples;
-    std::span<const SwingSample> best = samples;
+    std::span<const PositionSample> best = samples;
     double most = -1.0;
     std::size_t begin = 0;
     for (std::size_t end = 1; end <= samples.size(); ++end) {
@@ -93,7 +93,7 @@ struct Peak {
     double over_noise = 0.0;  // its sum of squares, in those of the noise for each sample
 };
 
-Peak highest_peak(std::span<const SwingSample> samples, double length_m) {
+Peak highest_peak(std::span<const PositionSample> samples, double length_m) {
     const PlanePath xy = clipped(samples);
     const double total = (xy.rowwise() - xy.colwise().mean()).squaredNorm();
     const double span = samples.back().t - samples.front().t;
@@ -120,7 +120,7 @@ Peak highest_peak(std::span<const SwingSample> samples, double length_m) {
 
 }  // namespace
 
-Eigen::Vector2d axis_weights(std::span<const SwingSample> samples) {
+Eigen::Vector2d axis_weights(std::span<const PositionSample> samples) {
     std::vector<double> x, y;
     for (const auto& s : samples) {
         x.push_back(s.sigma.x());
@@ -130,7 +130,7 @@ Eigen::Vector2d axis_weights(std::span<const SwingSample> samples) {
     return sigma.cwiseInverse() * sigma.minCoeff();
 }
 
-std::optional<double> find_frequency(std::span<const SwingSample> all, double length_m) {
+std::optional<double> find_frequency(std::span<const PositionSample> all, double length_m) {
     const auto samples = liveliest(all);
     // Bringing the bob to its place can be a larger motion than the swing; a part is free of it.
     for (const std::size_t parts : {1, 2, 4}) {

@@ -5,7 +5,7 @@
 
 #include <Eigen/Core>
 
-#include "pipeline/analysis/swing_samples.hpp"
+#include "pipeline/analysis/position_samples.hpp"
 
 namespace kinectlab {
 
@@ -13,7 +13,7 @@ namespace kinectlab {
 using PlanePath = Eigen::Matrix<double, Eigen::Dynamic, 2>;
 
 /// The two horizontal axes' weights in a guess: the noisier one counts less; the larger is 1.
-[[nodiscard]] Eigen::Vector2d axis_weights(std::span<const SwingSample> samples);
+[[nodiscard]] Eigen::Vector2d axis_weights(std::span<const PositionSample> samples);
 
 /// The frequency of the horizontal motion, 1/s: the highest peak of the least-squares spectrum
 /// (Lomb, Astrophys. Space Sci. 39 (1976)) times the frequency squared, that is, of the velocities:
@@ -21,7 +21,7 @@ using PlanePath = Eigen::Matrix<double, Eigen::Dynamic, 2>;
 /// that moves most is looked at, and its halves and quarters if no peak stands out of the noise in
 /// all of it. Nothing if none does there either.
 [[nodiscard]] std::optional<double> find_frequency(
-    std::span<const SwingSample> samples, double length_m
+    std::span<const PositionSample> samples, double length_m
 );
 
 }  // namespace kinectlab

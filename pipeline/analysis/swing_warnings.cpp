@@ -33,14 +33,14 @@ bool statistics_dominate(const Measurement& m) {
 }  // namespace
 
 std::vector<std::string> swing_warnings(
-    std::span<const SwingSample> samples,
+    std::span<const PositionSample> samples,
     const SwingFit& fit,
     const std::vector<Measurement>& measurements,
     const PendulumSettings& settings
 ) {
     std::vector<std::string> warnings;
-    const SwingSample& first = samples[fit.begin];
-    const SwingSample& last = samples[fit.end - 1];
+    const PositionSample& first = samples[fit.begin];
+    const PositionSample& last = samples[fit.end - 1];
     const double periods = (last.t - first.t) / named(measurements, "period").value;
     const double left_out_before = first.t - samples.front().t;
     const double left_out_after = samples.back().t - last.t;

@@ -11,7 +11,7 @@ namespace kinectlab {
 
 /// What makes a run less good, in sentences for a student. `samples` are all tracked ones.
 [[nodiscard]] std::vector<std::string> swing_warnings(
-    std::span<const SwingSample> samples,
+    std::span<const PositionSample> samples,
     const SwingFit& fit,
     const std::vector<Measurement>& measurements,
     const PendulumSettings& settings

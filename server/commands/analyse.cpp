@@ -145,7 +145,7 @@ Result<void> write_files(
     const std::filesystem::path& folder,
     const nlohmann::json& result,
     const std::vector<Trajectory>& trajectories,
-    const PendulumFit& fit
+    const ObjectFit& fit
 ) {
     std::error_code code;
     std::filesystem::create_directories(folder, code);

@@ -18,7 +18,7 @@ void append(std::string& csv, const Eigen::Vector3d& v) {
 
 }  // namespace
 
-std::string fit_to_csv(const PendulumFit& fit) {
+std::string fit_to_csv(const ObjectFit& fit) {
     std::string csv = "t_ns,x,y,z,fit_x,fit_y,fit_z,residual_x,residual_y,residual_z\n";
     for (std::size_t i = 0; i < fit.t.size(); ++i) {
         csv += std::to_string(fit.t[i]);

@@ -2,12 +2,12 @@
 
 #include <string>
 
-#include "pipeline/analysis/pendulum.hpp"
+#include "pipeline/analysis/analysis.hpp"
 
 namespace kinectlab::commands {
 
 /// t_ns,x,y,z,fit_x,fit_y,fit_z,residual_x,residual_y,residual_z in metres, lab frame; a cell is
 /// empty where nothing was measured or the fit does not reach.
-[[nodiscard]] std::string fit_to_csv(const PendulumFit& fit);
+[[nodiscard]] std::string fit_to_csv(const ObjectFit& fit);
 
 }  // namespace kinectlab::commands

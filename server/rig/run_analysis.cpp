@@ -25,7 +25,7 @@ double parameter(const lab::Run& run, const char* name, double otherwise) {
 /// What somebody needs to come to the same numbers again. A simulated rig's source carries its
 /// seed: sim://rig-1?seed=1.
 experiments::Provenance provenance(
-    const RunMeasured& measured, const Trajectory& trajectory, const PendulumFit& fit
+    const RunMeasured& measured, const Trajectory& trajectory, const ObjectFit& fit
 ) {
     const auto& samples = trajectory.samples;
     const auto tracked = std::count_if(samples.begin(), samples.end(), [](const auto& sample) {
@@ -77,7 +77,7 @@ json columns(const std::vector<Eigen::Vector3d>& points) {
     return axes;
 }
 
-json fit_json(const PendulumFit& fit, TimeNs started) {
+json fit_json(const ObjectFit& fit, TimeNs started) {
     json t_s = json::array();
     for (const TimeNs t : fit.t)
         t_s.push_back(to_seconds(t - started));

@@ -10,7 +10,7 @@
 namespace kinectlab {
 
 /// One measured position; whiten makes its noise one in every direction.
-struct SwingSample {
+struct PositionSample {
     std::size_t index = 0;   ///< in the trajectory
     double t = 0.0;          ///< s since the trajectory's first sample
     Eigen::Vector3d p_lab;   ///< m
@@ -20,7 +20,9 @@ struct SwingSample {
 
 /// The tracked samples. One without a usable covariance counts as known to a millimetre.
 /// Errors (bad_data): times that do not increase, a tracked position or its covariance not finite,
-/// fewer than 30 tracked samples.
-[[nodiscard]] Result<std::vector<SwingSample>> collect_swing_samples(const Trajectory& trajectory);
+/// fewer than `fewest` tracked samples.
+[[nodiscard]] Result<std::vector<PositionSample>> collect_position_samples(
+    const Trajectory& trajectory, std::size_t fewest = 30
+);
 
 }  // namespace kinectlab

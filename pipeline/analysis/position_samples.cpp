@@ -1,18 +1,19 @@
-#include "pipeline/analysis/swing_samples.hpp"
+#include "pipeline/analysis/position_samples.hpp"
 
 #include <Eigen/Cholesky>
 
 namespace kinectlab {
 namespace {
 
-constexpr std::size_t kFewest = 30;
 constexpr double kDefaultSigma = 1e-3;
 
 }  // namespace
 
-Result<std::vector<SwingSample>> collect_swing_samples(const Trajectory& trajectory) {
+Result<std::vector<PositionSample>> collect_position_samples(
+    const Trajectory& trajectory, std::size_t fewest
+) {
     const auto& all = trajectory.samples;
-    std::vector<SwingSample> samples;
+    std::vector<PositionSample> samples;
     samples.reserve(all.size());
     for (std::size_t i = 0; i < all.size(); ++i) {
         if (i > 0 && all[i].t <= all[i - 1].t)
@@ -31,7 +32,7 @@ Result<std::vector<SwingSample>> collect_swing_samples(const Trajectory& traject
                 "sample " + std::to_string(i) + " is marked tracked but is not a number",
                 "mark it lost, or give its position and covariance"
             );
-        SwingSample sample{
+        PositionSample sample{
             i,
             to_seconds(all[i].t - all.front().t),
             all[i].p_lab,
@@ -44,13 +45,13 @@ Result<std::vector<SwingSample>> collect_swing_samples(const Trajectory& traject
         }
         samples.push_back(sample);
     }
-    if (samples.size() < kFewest)
+    if (samples.size() < fewest)
         return fail(
             ErrorCode::bad_data,
             "samples",
             "the object was seen in " + std::to_string(samples.size()) + " of " +
                 std::to_string(all.size()) + " frames",
-            "at least " + std::to_string(kFewest) + " are needed, over three periods or more"
+            "at least " + std::to_string(fewest) + " are needed"
         );
     return samples;
 }

@@ -1,0 +1,11 @@
+#pragma once
+
+#include "pipeline/analysis/analysis.hpp"
+
+namespace kinectlab {
+
+// Each in the .cpp of its name; listed by analysis_methods().
+
+[[nodiscard]] AnalysisMethod pendulum_method();
+
+}  // namespace kinectlab
