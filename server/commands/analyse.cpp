@@ -12,8 +12,8 @@
 #include "server/config/share.hpp"
 #include "server/config/version.hpp"
 #include "server/experiments/definition.hpp"
+#include "server/experiments/evaluate.hpp"
 #include "server/experiments/recorded_settings.hpp"
-#include "server/experiments/result_json.hpp"
 #include "server/experiments/trajectory_table.hpp"
 
 namespace kinectlab::commands {
@@ -33,8 +33,8 @@ struct Arguments {
 
 /// What an analysis starts from, wherever it came from.
 struct Material {
-    std::vector<Trajectory> trajectories;  ///< the pendulum's first
-    experiments::Provenance provenance;    ///< but for what the fit adds
+    std::vector<Trajectory> trajectories;
+    experiments::Provenance provenance;  ///< but for what the fit adds
 };
 
 std::optional<int> parse(int argc, char** argv, Arguments& arguments) {
@@ -68,27 +68,22 @@ std::optional<int> parse(int argc, char** argv, Arguments& arguments) {
     )
         ->expected(1)
         ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
-    app.add_option("--out", arguments.out, "folder for result.json, poses.csv and fit.csv")
+    app.add_option(
+           "--out", arguments.out, "folder for result.json, poses.csv, fit.csv and plots.json"
+    )
         ->check(check_path);
     return parse_arguments(app, argc, argv);
 }
 
-bool on_earth(const Values& truth) {
-    const auto gravity = truth.find("gravity");
-    return gravity == truth.end() || is_earthly(gravity->second);
-}
-
-PendulumSettings pendulum_settings(const Values& values, const std::optional<RgbdCamera>& camera) {
-    PendulumSettings settings;
-    settings.length_m = values.at("length_m");
-    settings.length_u_m = values.at("length_u_m");
-    settings.bob_radius_m = values.at("bob_radius_m");
-    settings.latitude_deg = values.at("latitude_deg");
+AnalysisConditions conditions_of(const std::optional<RgbdCamera>& camera, const Values& truth) {
+    AnalysisConditions conditions;
     if (camera) {
-        settings.depth_scale_u = camera->depth_scale_u;
-        settings.clock_u = camera->clock_u;
+        conditions.depth_scale_u = camera->depth_scale_u;
+        conditions.clock_u = camera->clock_u;
     }
-    return settings;
+    const auto gravity = truth.find("gravity");
+    conditions.on_earth = gravity == truth.end() || is_earthly(gravity->second);
+    return conditions;
 }
 
 std::size_t tracked_in(const Trajectory& trajectory) {
@@ -122,13 +117,16 @@ bool is_table(const std::filesystem::path& path) {
 }
 
 Result<Material> from_table(
-    const std::filesystem::path& path, const experiments::TableLayout& layout
+    const std::filesystem::path& path,
+    const experiments::TableLayout& layout,
+    const std::string& object
 ) {
     std::vector<std::uint8_t> bytes;
     if (auto ok = read_file(path, kMostTableBytes, bytes); !ok) return tl::unexpected(ok.error());
     const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
     auto trajectory = experiments::read_trajectory_table(text, layout, path.filename().string());
     if (!trajectory) return tl::unexpected(trajectory.error());
+    trajectory->object = object;
     Material material{{std::move(*trajectory)}, {}};
     const auto& samples = material.trajectories.front().samples;
     auto& p = material.provenance;
@@ -143,9 +141,8 @@ Result<Material> from_table(
 
 Result<void> write_files(
     const std::filesystem::path& folder,
-    const nlohmann::json& result,
-    const std::vector<Trajectory>& trajectories,
-    const ObjectFit& fit
+    const experiments::Evaluation& evaluation,
+    const std::vector<Trajectory>& trajectories
 ) {
     std::error_code code;
     std::filesystem::create_directories(folder, code);
@@ -157,8 +154,15 @@ Result<void> write_files(
             "name a folder that you may write to"
         );
     return write_text_file(folder / "poses.csv", poses_to_csv(trajectories))
-        .and_then([&] { return write_text_file(folder / "fit.csv", fit_to_csv(fit)); })
-        .and_then([&] { return write_text_file(folder / "result.json", result.dump(1) + "\n"); });
+        .and_then([&] {
+            return write_text_file(folder / "fit.csv", fit_to_csv(evaluation.outcome.fits));
+        })
+        .and_then([&] {
+            return write_text_file(folder / "plots.json", evaluation.plots.dump() + "\n");
+        })
+        .and_then([&] {
+            return write_text_file(folder / "result.json", evaluation.result.dump(1) + "\n");
+        });
 }
 
 }  // namespace
@@ -191,30 +195,33 @@ int analyse(int argc, char** argv) {
             : experiments::with_recorded_settings(*definition, *given, arguments.recording);
     if (!values) return report(values.error());
 
-    auto material = is_table(arguments.recording)
-                        ? from_table(arguments.recording, *layout)
-                        : from_recording(arguments.recording, *definition, *values);
+    auto material =
+        is_table(arguments.recording)
+            ? from_table(arguments.recording, *layout, definition->analysis.objects.front())
+            : from_recording(arguments.recording, *definition, *values);
     if (!material) return report(material.error());
-    auto& provenance = material->provenance;
-    PendulumSettings settings = pendulum_settings(*values, provenance.camera);
-    settings.on_earth = on_earth(experiments::recorded_truth(*definition, arguments.recording));
-    const auto measured = analyse_pendulum(material->trajectories.front(), settings);
-    if (!measured) {
-        static_cast<void>(report(measured.error()));
+    material->provenance.program_version = config::version();
+    const auto evaluation = experiments::evaluate(
+        {*definition,
+         *values,
+         material->trajectories,
+         conditions_of(
+             material->provenance.camera,
+             experiments::recorded_truth(*definition, arguments.recording)
+         ),
+         {}},
+        material->provenance,
+        material->provenance.first_frame
+    );
+    if (!evaluation) {
+        static_cast<void>(report(evaluation.error()));
         return kFailed;
     }
-    provenance.program_version = config::version();
-    provenance.samples_used = static_cast<std::size_t>(measured->fit.used);
-    provenance.outliers = static_cast<std::size_t>(measured->fit.outliers);
-    provenance.reduced_chi2 = measured->fit.reduced_chi2;
-    const auto result = experiments::result_to_json(
-        definition->id, *values, measured->measurements, measured->warnings, provenance
-    );
     if (!arguments.out.empty()) {
-        auto written = write_files(arguments.out, result, material->trajectories, measured->fit);
+        auto written = write_files(arguments.out, *evaluation, material->trajectories);
         if (!written) return report(written.error());
     }
-    print_json(result);
+    print_json(evaluation->result);
     return kOk;
 }
 

@@ -18,15 +18,16 @@ void append(std::string& csv, const Eigen::Vector3d& v) {
 
 }  // namespace
 
-std::string fit_to_csv(const ObjectFit& fit) {
-    std::string csv = "t_ns,x,y,z,fit_x,fit_y,fit_z,residual_x,residual_y,residual_z\n";
-    for (std::size_t i = 0; i < fit.t.size(); ++i) {
-        csv += std::to_string(fit.t[i]);
-        append(csv, fit.p_lab[i]);
-        append(csv, fit.fit_lab[i]);
-        append(csv, fit.residual[i]);
-        csv += '\n';
-    }
+std::string fit_to_csv(const std::vector<ObjectFit>& fits) {
+    std::string csv = "object,t_ns,x,y,z,fit_x,fit_y,fit_z,residual_x,residual_y,residual_z\n";
+    for (const auto& fit : fits)
+        for (std::size_t i = 0; i < fit.t.size(); ++i) {
+            csv += fit.object + ',' + std::to_string(fit.t[i]);
+            append(csv, fit.p_lab[i]);
+            append(csv, fit.fit_lab[i]);
+            append(csv, fit.residual[i]);
+            csv += '\n';
+        }
     return csv;
 }
 

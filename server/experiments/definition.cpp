@@ -72,9 +72,18 @@ Result<Values> validate(const Definition& definition, const Values& given, RigKi
     Values values;
     for (const auto& name : names_of(definition, rig)) {
         const auto found = given.find(name);
-        values[name] = found != given.end() ? found->second : find(definition, name)->default_value;
+        if (found != given.end())
+            values[name] = found->second;
+        else if (const auto otherwise = find(definition, name)->default_value)
+            values[name] = *otherwise;
     }
     return values;
+}
+
+std::optional<double> value_of(const Setting& setting, const Values& values) {
+    if (!setting.parameter) return setting.number;
+    const auto found = values.find(*setting.parameter);
+    return found == values.end() ? std::nullopt : std::optional(found->second);
 }
 
 }  // namespace kinectlab::experiments

@@ -4,10 +4,13 @@
 
 #include "pipeline/core/nearest_name.hpp"
 #include "server/experiments/definition.hpp"
+#include "server/experiments/definition_parts_json.hpp"
 #include "server/experiments/model_files.hpp"
 #include "server/experiments/objects_json.hpp"
 #include "server/experiments/preprocess_json.hpp"
 #include "server/experiments/strict_json.hpp"
+#include "server/experiments/student_text.hpp"
+#include "server/experiments/units_of_names.hpp"
 
 namespace kinectlab::experiments {
 namespace {
@@ -24,15 +27,24 @@ Result<Parameter> read_parameter(const json& element, const std::string& path) {
     parameter.min = reader.number("min");
     parameter.max = reader.number("max");
     parameter.step = reader.number("step");
-    parameter.default_value = reader.number("default");
+    parameter.default_value = reader.optional_number("default");
     parameter.help = reader.text("help");
     parameter.simulation_only = reader.flag_or("simulation_only", false);
     if (!(parameter.min < parameter.max))
         reader.refuse("min", "is not below max", "give min < max");
     if (!(parameter.step > 0.0)) reader.refuse("step", "is not above 0", "give a positive step");
     if (parameter.default_value < parameter.min || parameter.default_value > parameter.max) {
-        reader.refuse("default", "lies outside min and max", "give a default between them");
+        if (parameter.default_value)
+            reader.refuse("default", "lies outside min and max", "give a default between them");
     }
+    const auto promised = unit_in_name(parameter.name);
+    if (!promised.empty() && parameter.unit != promised)
+        reader.refuse(
+            "unit",
+            "is \"" + parameter.unit.substr(0, 16) + "\", but the name " + parameter.name +
+                " ends as " + std::string(promised) + " does",
+            "give the unit " + std::string(promised) + ", or another name"
+        );
     if (!reader.ok()) return reader.error();
     return parameter;
 }
@@ -63,10 +75,14 @@ Result<ObjectSpec> resolve(const json& element, const std::string& path, const V
 Result<ExperimentObject> read_experiment_object(
     const json& element, const std::string& path, const std::vector<Parameter>& parameters
 ) {
-    for (const auto end : {&Parameter::default_value, &Parameter::min, &Parameter::max}) {
+    using End = double (*)(const Parameter&);
+    for (const End end :
+         {End([](const Parameter& p) { return *p.default_value; }),
+          End([](const Parameter& p) { return p.min; }),
+          End([](const Parameter& p) { return p.max; })}) {
         Values values;
         for (const auto& parameter : parameters)
-            values[parameter.name] = parameter.*end;
+            if (parameter.default_value) values[parameter.name] = end(parameter);
         if (auto spec = resolve(element, path, values); !spec)
             return tl::unexpected<Error>(spec.error());
     }
@@ -87,19 +103,49 @@ Result<Definition> load_file(const std::filesystem::path& file) {
 
 Result<Definition> read_definition(const json& document) {
     ObjectReader reader(
-        document, "", {"id", "title", "summary", "parameters", "objects", "preprocess"}
+        document,
+        "",
+        {"id",
+         "title",
+         "summary",
+         "theory",
+         "apparatus",
+         "parameters",
+         "objects",
+         "preprocess",
+         "sequence",
+         "duration_s",
+         "early_end",
+         "analysis",
+         "plots",
+         "acceptance"}
     );
     Definition definition;
     definition.id = reader.text("id");
     definition.title = reader.text("title");
     definition.summary = reader.text("summary");
+    definition.theory = reader.text_or("theory", "");
+    definition.apparatus = reader.text("apparatus");
     const auto& parameters = reader.array("parameters");
     const auto& objects = reader.array("objects");
     if (!reader.ok()) return reader.error();
 
+    for (const auto& [text, path] :
+         {std::pair(&definition.summary, "summary"), std::pair(&definition.theory, "theory")}) {
+        if (auto ok = check_student_text(*text, path); !ok) return tl::unexpected(ok.error());
+    }
     for (std::size_t i = 0; i < parameters.size(); ++i) {
-        auto parameter = read_parameter(parameters[i], "parameters[" + std::to_string(i) + "]");
+        const std::string path = "parameters[" + std::to_string(i) + "]";
+        auto parameter = read_parameter(parameters[i], path);
         if (!parameter) return tl::unexpected<Error>(parameter.error());
+        for (const auto& other : definition.parameters)
+            if (other.name == parameter->name)
+                return fail(
+                    ErrorCode::invalid_argument,
+                    path + ".name",
+                    "is \"" + other.name + "\" like another one's",
+                    "give every parameter a name of its own"
+                );
         definition.parameters.push_back(std::move(*parameter));
     }
     for (std::size_t i = 0; i < objects.size(); ++i) {
@@ -114,6 +160,7 @@ Result<Definition> read_definition(const json& document) {
         if (!preprocess) return tl::unexpected<Error>(preprocess.error());
         definition.preprocess = *preprocess;
     }
+    if (auto ok = read_parts(document, definition); !ok) return tl::unexpected(ok.error());
     return definition;
 }
 
@@ -126,7 +173,7 @@ json to_json(const Definition& definition) {
              {"min", p.min},
              {"max", p.max},
              {"step", p.step},
-             {"default", p.default_value},
+             {"default", p.default_value ? json(*p.default_value) : json()},
              {"help", p.help},
              {"simulation_only", p.simulation_only}}
         );
@@ -138,9 +185,12 @@ json to_json(const Definition& definition) {
         {"id", definition.id},
         {"title", definition.title},
         {"summary", definition.summary},
+        {"theory", definition.theory},
+        {"apparatus", definition.apparatus},
         {"parameters", std::move(parameters)},
         {"objects", std::move(objects)}};
     if (definition.preprocess) document["preprocess"] = to_json(*definition.preprocess);
+    write_parts(definition, document);
     return document;
 }
 

@@ -151,6 +151,15 @@ double ObjectReader::number_or(const std::string& key, double otherwise) {
     return has(key) ? number(key) : otherwise;
 }
 
+std::string ObjectReader::text_or(const std::string& key, const std::string& otherwise) {
+    return has(key) ? text(key) : otherwise;
+}
+
+std::optional<double> ObjectReader::optional_number(const std::string& key) {
+    if (error_ || !has(key) || json_.at(key).is_null()) return std::nullopt;
+    return number(key);
+}
+
 bool ObjectReader::flag_or(const std::string& key, bool otherwise) {
     if (error_ || !has(key)) return otherwise;
     const json& value = json_.at(key);

@@ -31,6 +31,9 @@ public:
     [[nodiscard]] std::string text(const std::string& key);
     [[nodiscard]] double number(const std::string& key);
     [[nodiscard]] double number_or(const std::string& key, double otherwise);
+    [[nodiscard]] std::string text_or(const std::string& key, const std::string& otherwise);
+    /// None where the key is missing or null.
+    [[nodiscard]] std::optional<double> optional_number(const std::string& key);
     [[nodiscard]] bool flag_or(const std::string& key, bool otherwise);
     /// An array, possibly empty; an empty one after an error.
     [[nodiscard]] const nlohmann::json& array(const std::string& key);

@@ -20,15 +20,16 @@ struct RunMeasured {
 
 struct RunAnalysis {
     std::string result_json;  ///< the project's result object
-    std::string fit_json;     ///< {"t_s", "measured", "fit", "residual"}
+    std::string fit_json;     ///< {"objects": [{"object", "t_s", "measured", "fit", "residual"}]}
+    std::string plots_json;   ///< as experiments::Evaluation has them
     std::vector<std::string> warnings;
 };
 
 /// All of a run's poses at their best: gaps filled, velocities from both sides.
 [[nodiscard]] std::vector<Trajectory> final_trajectories(const RunMeasured& measured);
 
-/// From what a run measured to its result, with the provenance of every number. Errors as the
-/// experiment's analysis; not_found where an experiment has none.
+/// From what a run measured to its result by the definition that it was made with, with the
+/// provenance of every number. Errors as the experiment's analysis.
 [[nodiscard]] Result<RunAnalysis> analyse_run(
     const RunMeasured& measured, const std::vector<Trajectory>& trajectories
 );

@@ -1,8 +1,8 @@
 #include "server/rig/run_execution.hpp"
 
-#include <cmath>
-#include <numbers>
 #include <utility>
+
+#include <nlohmann/json.hpp>
 
 #include "server/lab/utc.hpp"
 
@@ -11,20 +11,6 @@ namespace {
 
 using lab::RunEvent;
 using lab::RunState;
-
-double parameter(const lab::Run& run, const char* name, double otherwise) {
-    const auto found = run.parameters.find(name);
-    return found == run.parameters.end() ? otherwise : found->second;
-}
-
-PreparationSettings preparation_for(const lab::Run& run) {
-    const double amplitude_deg = parameter(run, "amplitude_deg", 10.0);
-    return {
-        .amplitude_rad = amplitude_deg * std::numbers::pi / 180.0,
-        .clear_angle_rad =
-            clear_angle(parameter(run, "length_m", 1.0), parameter(run, "bob_radius_m", 0.05)),
-    };
-}
 
 bool needs_frames(RunState state) {
     return state == RunState::preparing || state == RunState::ready ||
@@ -60,10 +46,7 @@ void RunExecution::enter(RunState state, TimeNs now) {
     entered_at_ = now;
     switch (state) {
         case RunState::preparing:
-            preparation_.emplace(*rig_.device.actuator, preparation_for(run_));
-            if (auto set = rig_.device.actuator->configure(run_.parameters); !set) {
-                fail_run(now, set.error());
-            }
+            if (auto begun = begin_preparation(); !begun) fail_run(now, begun.error());
             break;
         case RunState::ready:
             break;
@@ -102,6 +85,15 @@ void RunExecution::enter(RunState state, TimeNs now) {
     }
 }
 
+Result<void> RunExecution::begin_preparation() {
+    auto definition =
+        experiments::read_definition(nlohmann::json::parse(run_.definition_json, nullptr, false));
+    if (!definition) return tl::unexpected(definition.error());
+    preparation_.emplace(*rig_.device.actuator, preparation_for(*definition, run_.parameters));
+    end_watch_.emplace(definition->early_end);
+    return rig_.device.actuator->configure(run_.parameters);
+}
+
 void RunExecution::observe(
     RunState state, TimeNs now, const RgbdFrame& frame, std::uint32_t missed
 ) {
@@ -113,6 +105,7 @@ void RunExecution::observe(
 }
 
 void RunExecution::prepare(TimeNs now, const RgbdFrame& frame, std::uint32_t missed) {
+    if (!preparation_) return;  // it was refused, and the run has failed
     const auto progress = preparation_->step(now);
     if (!progress) return fail_run(now, progress.error());
     if (progress->learn) {
@@ -120,7 +113,7 @@ void RunExecution::prepare(TimeNs now, const RgbdFrame& frame, std::uint32_t mis
     } else if (rig_.observer.learned_frames() > 0) {
         track(RunState::preparing, now, frame, missed);
     }
-    if (progress->done) advance(RunEvent::prepared, now, "The bob is held at its angle");
+    if (progress->done) advance(RunEvent::prepared, now, "Everything is in place");
 }
 
 void RunExecution::track(RunState state, TimeNs now, const RgbdFrame& frame, std::uint32_t missed) {
@@ -142,6 +135,7 @@ void RunExecution::track(RunState state, TimeNs now, const RgbdFrame& frame, std
             missed});
         if (!counts) continue;
         samples_[object.object].push_back(object.track);
+        end_watch_->look(object.object, object.motion);
         rig_.writer.append(
             run_.id, {object.object, object.motion}, store::FrameCounts{frames_, frames_lost_}
         );
@@ -149,6 +143,8 @@ void RunExecution::track(RunState state, TimeNs now, const RgbdFrame& frame, std
     if (!counts) return;
     if (frame.t - run_.started.value() >= from_seconds(run_.duration_s)) {
         advance(RunEvent::measured, now, "The duration is over");
+    } else if (const auto reason = end_watch_->over(frame.t)) {
+        advance(RunEvent::measured, now, *reason);
     }
 }
 
@@ -201,6 +197,7 @@ void RunExecution::finish_analysis(TimeNs now) {
         .created = now,
         .result_json = result->result_json,
         .fit_json = result->fit_json,
+        .plots_json = result->plots_json,
         .warnings = result->warnings,
     };
     // In the wrong state only if somebody aborted in this moment: then there is no result.

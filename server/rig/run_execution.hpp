@@ -10,6 +10,7 @@
 #include "server/bus/bus.hpp"
 #include "server/rig/active_run.hpp"
 #include "server/rig/device.hpp"
+#include "server/rig/end_watch.hpp"
 #include "server/rig/observer.hpp"
 #include "server/rig/pose_writer.hpp"
 #include "server/rig/preparation.hpp"
@@ -59,6 +60,7 @@ public:
 private:
     void act_on_changes(TimeNs now);
     void enter(lab::RunState state, TimeNs now);
+    [[nodiscard]] Result<void> begin_preparation();
     void observe(lab::RunState state, TimeNs now, const RgbdFrame& frame, std::uint32_t missed);
     void watch(lab::RunState state, TimeNs now);
     void prepare(TimeNs now, const RgbdFrame& frame, std::uint32_t missed);
@@ -77,6 +79,7 @@ private:
     TimeNs entered_at_ = 0;
     TimeNs last_frame_at_;
     std::optional<Preparation> preparation_;
+    std::optional<EndWatch> end_watch_;
     std::map<std::string, std::vector<TrackSample>> samples_;  ///< by object
     std::int64_t frames_ = 0;
     std::int64_t frames_lost_ = 0;
