@@ -30,9 +30,7 @@ std::filesystem::path default_data_dir(const Environment& environment) {
 }
 
 std::vector<RigConfig> default_rigs() {
-    return {
-        {"rig-1", "Pendulum 1", "sim://rig-1", {"pendulum"}},
-        {"rig-2", "Pendulum 2", "sim://rig-2", {"pendulum"}}};
+    return {{"rig-1", "Rig 1", "sim://rig-1", {}}, {"rig-2", "Rig 2", "sim://rig-2", {}}};
 }
 
 bool is_rig_id(const std::string& id) {
