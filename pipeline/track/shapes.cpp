@@ -3,11 +3,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 #include "pipeline/track/shape_borders.hpp"
 #include "pipeline/track/shape_grid.hpp"
 #include "pipeline/track/shape_pool.hpp"
 #include "pipeline/track/shape_search.hpp"
+#include "pipeline/track/shape_whole.hpp"
 
 namespace kinectlab {
 namespace {
@@ -77,7 +79,9 @@ struct ShapeDetector::State {
         return static_cast<double>(component.size()) >= min_cells();
     }
 
-    /// The simplest kind that explains the component's pixels nearly as well as any other.
+    /// The simplest kind that explains the component's pixels nearly as well as any other, among
+    /// those that stand there as a whole. A bulge that a ball fits but that is none may yet be a
+    /// flat face; a richer kind it is only if that explains it better than the ball does.
     std::optional<ShapeFit> best_kind(const Shape& shape) {
         grid.collect_pixels(image, taken, 0, pixels);
         compared.clear();
@@ -86,23 +90,34 @@ struct ShapeDetector::State {
             compared.push_back(pixels[i]);
         grid.collect_points(points, kSearchPoints, own);
         std::array<std::optional<ShapeFit>, kKinds.size()> fits;
-        double least = 1.0;
+        double least = 1.0, least_simpler = 1.0;
         for (const auto kind : kKinds) {
-            const auto k = static_cast<std::size_t>(kind);
-            if (!settings.kinds[k]) continue;
-            if (kind == shape.kind) fits[k] = sound_fit(shape);
-            search_shape(kind, own, limits_of(settings, kind), kRough, {kSearchTries, 2}, guesses);
-            for (const auto& guess : guesses) {
-                auto fit = sound_fit(guess.shape);
-                if (fit && (!fits[k] || fit->cost < fits[k]->cost)) fits[k] = std::move(fit);
-            }
-            if (!fits[k]) continue;
-            if (kind == ShapeKind::plane && fits[k]->cost < kPlainCost) return fits[k];
-            least = std::min(least, fits[k]->cost);
+            auto& best = fits[static_cast<std::size_t>(kind)];
+            best = best_of_kind(kind, shape);
+            if (!best) continue;
+            if (kind == ShapeKind::plane && best->cost < kPlainCost) return best;
+            const double simpler =
+                std::exchange(least_simpler, std::min(least_simpler, best->cost));
+            if (best->cost < simpler && is_whole(*best, image, camera.depth, scale))
+                least = std::min(least, best->cost);
+            else
+                best.reset();
         }
         for (const auto& fit : fits)
             if (fit && fit->cost <= kSimplerCost * least + 0.01) return fit;
         return std::nullopt;
+    }
+
+    /// What explains the compared pixels best, whole or not.
+    std::optional<ShapeFit> best_of_kind(ShapeKind kind, const Shape& shape) {
+        if (!settings.kinds[static_cast<std::size_t>(kind)]) return std::nullopt;
+        auto best = kind == shape.kind ? sound_fit(shape) : std::nullopt;
+        search_shape(kind, own, limits_of(settings, kind), kRough, {kSearchTries, 2}, guesses);
+        for (const auto& guess : guesses) {
+            auto fit = sound_fit(guess.shape);
+            if (fit && (!best || fit->cost < best->cost)) best = std::move(fit);
+        }
+        return best;
     }
 
     std::optional<ShapeFit> sound_fit(const Shape& guess) {
@@ -127,7 +142,7 @@ struct ShapeDetector::State {
         grid.collect_pixels(image, taken, kGrowCells, pixels);
         const Shape guess = fit->shape;
         fit = fitter.fit(image, pixels, guess, false);
-        if (!fit || !is_sound(*fit)) return false;
+        if (!fit || !is_sound(*fit) || !is_whole(*fit, image, camera.depth, scale)) return false;
 
         if (result.size() <= results) result.emplace_back();
         SceneShape& found = result[results];
