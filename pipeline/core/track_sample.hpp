@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <string_view>
 
 #include <Eigen/Geometry>
 
@@ -21,6 +22,8 @@ struct TrackQuality {
     int points = 0;             ///< depth pixels that the pose rests on
     double inlier_share = 0.0;  ///< of the pixels offered, 0 to 1
     double rms_steps = 0.0;     ///< RMS residual along the viewing rays, disparity steps
+    /// Why it is lost, for a person, as a constant of the program; empty where not known.
+    std::string_view why_lost;
 };
 
 /// One object in one frame, in the depth camera's frame.

@@ -133,8 +133,10 @@ Result<std::span<const TrackSample>> Chain::track(const RgbdFrame& frame) {
     const auto moved = s.preprocessing.moved(**clean);
     if (!moved) return tl::unexpected(moved.error());
     s.samples.clear();
-    for (const auto& tracker : s.trackers)
+    for (const auto& tracker : s.trackers) {
         tracker->track(**clean, *moved, s.samples);
+        if (auto fault = tracker->take_fault()) return tl::unexpected(std::move(*fault));
+    }
     std::sort(s.samples.begin(), s.samples.end(), [](const TrackSample& a, const TrackSample& b) {
         if (a.object != b.object) return a.object < b.object;
         if (a.quality.points != b.quality.points) return a.quality.points > b.quality.points;

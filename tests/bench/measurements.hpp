@@ -26,6 +26,8 @@ Figures measure_live_latency();
 Figures measure_texture_pose();
 Figures measure_sift3d_keypoints();
 Figures measure_rendering();
+Figures measure_colour_place();
+Figures measure_identities();
 
 /// Everything that can be measured. To add something: declare it above and name it here with the
 /// figures it yields, so that --filter can pass over what is not wanted.
@@ -55,6 +57,8 @@ inline constexpr std::array kMeasurements{
     Measurement{"2-D texture pose, SIFT", measure_texture_pose},
     Measurement{"3-D SIFT keypoints", measure_sift3d_keypoints},
     Measurement{"rendering a rig", measure_rendering},
+    Measurement{"colour: place, coverage", measure_colour_place},
+    Measurement{"identities: names switched, fragments, IDF1", measure_identities},
 };
 
 }  // namespace kinectlab::bench
