@@ -115,7 +115,7 @@ const std::vector<Stage>& stages() {
           reference(ReferenceMethod::median, {"seconds"})}},
         {"change",
          {change(ChangeMethod::image_grid, {"threshold_steps"}),
-          change(ChangeMethod::octree, {"voxel_m", "least_points"})}},
+          change(ChangeMethod::octree, {"voxel_m", "least_points", "threshold_steps"})}},
         {"segments", {connected()}},
     };
     return all;
@@ -198,9 +198,8 @@ json to_json(const PreprocessSettings& settings) {
         all["depth_cut"]["farthest_m"] = settings.depth_cut.farthest_m;
     if (settings.reference.method != ReferenceMethod::scene)
         all["reference"]["seconds"] = settings.reference.seconds;
-    if (settings.change.method == ChangeMethod::image_grid) {
-        all["change"]["threshold_steps"] = settings.change.threshold_steps;
-    } else {
+    all["change"]["threshold_steps"] = settings.change.threshold_steps;
+    if (settings.change.method == ChangeMethod::octree) {
         all["change"]["voxel_m"] = settings.change.voxel_m;
         all["change"]["least_points"] = settings.change.least_points;
     }

@@ -35,7 +35,7 @@ TEST(Preprocess, EveryStageHasItsMethods) {
         "smoothing": {"method": "moving_least_squares", "order": 1, "radius_m": 0.03},
         "depth_cut": {"method": "fixed", "farthest_m": 2.5},
         "reference": {"method": "rolling", "seconds": 5},
-        "change": {"method": "octree", "voxel_m": 0.04, "least_points": 3},
+        "change": {"method": "octree", "voxel_m": 0.04, "least_points": 3, "threshold_steps": 5},
         "segments": {"min_points": 100}})");
     ASSERT_TRUE(settings) << to_text(settings.error());
     EXPECT_EQ(settings->outliers->neighbours, 50);
@@ -50,6 +50,7 @@ TEST(Preprocess, EveryStageHasItsMethods) {
     EXPECT_EQ(settings->change.method, ChangeMethod::octree);
     EXPECT_EQ(settings->change.voxel_m, 0.04);
     EXPECT_EQ(settings->change.least_points, 3);
+    EXPECT_EQ(settings->change.threshold_steps, 5.0);
     EXPECT_EQ(settings->min_segment_points, 100);
     const auto again = read(to_json(*settings).dump());
     ASSERT_TRUE(again) << to_text(again.error());
