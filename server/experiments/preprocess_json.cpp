@@ -121,13 +121,6 @@ const std::vector<Stage>& stages() {
     return all;
 }
 
-std::string joined(const std::vector<std::string>& words) {
-    std::string text;
-    for (const auto& word : words)
-        text += (text.empty() ? "" : ", ") + word;
-    return text;
-}
-
 /// The method decides which keys are right, so a wrong method is told before a wrong key.
 Result<void> read_stage(
     const json& element, const std::string& path, const Stage& stage, PreprocessSettings& settings
@@ -146,7 +139,7 @@ Result<void> read_stage(
             ErrorCode::invalid_argument,
             path + ".method",
             "is \"" + name.substr(0, 60) + "\"",
-            "did you mean " + nearest_name(name, names) + "? Valid: " + joined(names)
+            did_you_mean(name, names)
         );
     std::vector<std::string> keys = {"method"};
     keys.insert(keys.end(), method->keys.begin(), method->keys.end());

@@ -105,6 +105,14 @@ INSTANTIATE_TEST_SUITE_P(
             R"({"change": {"threshold_steps": -1}})",
             "preprocess.change.threshold_steps",
             "above 0"},
+        Wrong{
+            R"({"smoothing": {"method": "mls"}})",
+            "preprocess.smoothing.method",
+            "did you mean moving_least_squares?"},
+        Wrong{
+            R"({"smoothing": {"method": "gauss"}})",
+            "preprocess.smoothing.method",
+            "valid: moving_least_squares, none"},
         Wrong{R"({"outliers": {"neighbours": 1.5}})", "preprocess.outliers.neighbours", "whole"},
         Wrong{R"({"outliers": {"neighbours": 1e6}})", "preprocess.outliers.neighbours", "4096"},
         Wrong{R"({"smoothing": {"order": 3}})", "preprocess.smoothing.order", "1 (linear)"},
@@ -115,6 +123,12 @@ INSTANTIATE_TEST_SUITE_P(
             "seconds above 0"}
     )
 );
+
+TEST(Preprocess, NumbersStandInErrorsAsTheyWereWritten) {
+    EXPECT_EQ(read(R"({"outliers": {"neighbours": 0}})").error().message, "is 0");
+    EXPECT_EQ(read(R"({"outliers": {"neighbours": 5000}})").error().message, "is 5000");
+    EXPECT_EQ(read(R"({"smoothing": {"radius_m": 0.25}})").error().message, "is 0.25");
+}
 
 }  // namespace
 }  // namespace kinectlab::experiments
