@@ -86,15 +86,16 @@ PendulumFit for_plots(
     return plot;
 }
 
-/// A swing that is too short is fitted by anything, so what fails then says little: tell its length
-/// instead. `what` where it was long enough.
+/// A swing that is too short looks like another motion: tell how short it is
+/// instead. `what` where it was long enough, or failed for another reason.
 Error blame_length(
     Error what, const std::vector<SwingSample>& samples, const PendulumSettings& settings
 ) {
+    if (what.message != kAnotherMotion || !settings.on_earth) return what;
     constexpr double kFewest = 3.0;
     const double period = 2.0 * std::numbers::pi * std::sqrt(settings.length_m / kStandardGravity);
     const double moved = longest_motion_s(samples, period);
-    if (!settings.on_earth || moved >= kFewest * period) return what;
+    if (moved >= kFewest * period) return what;
     return {
         ErrorCode::bad_data,
         "samples",

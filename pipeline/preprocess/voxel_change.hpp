@@ -15,10 +15,10 @@
 namespace kinectlab {
 
 /// Octree change (the paper's III.B.3) between pictures of one camera, in the form that
-/// ChangeLimits has: a picture of limits. Far away a sensor's noise leaves any voxel, so that voxels
-/// alone would find objects in a wall. A reading is therefore asked for its voxel only where it lies
-/// before its limit: before all that the reference shows along its ray, by more than the noise at
-/// that distance. What an object uncovered lies behind and is no object. Not thread-safe.
+/// ChangeLimits has: a picture of limits. Far away a sensor's noise leaves any voxel, so that
+/// voxels alone would find objects in a wall. A reading is therefore asked for its voxel only where
+/// it lies before its limit: before all that the reference shows along its ray, by more than the
+/// noise at that distance. What an object uncovered lies behind and is no object. Not thread-safe.
 class VoxelChange {
 public:
     VoxelChange(const RgbdCamera& camera, const ChangeDetectionSettings& settings);

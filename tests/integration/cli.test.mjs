@@ -176,6 +176,20 @@ describe('a simulated pendulum', () => {
     assert.ok(rms < 0.005, `${rms} m`);
   });
 
+  test('has a radius with its uncertainty where none was given, and a quality', () => {
+    const track = (bob) => rows(kinectlab('track', recording, '--objects', objects('free.json', bob)).stdout)
+      .filter(({ status }) => status === 'tracked');
+    const free = track({ name: 'bob', method: 'sphere', min_radius_m: 0.02, max_radius_m: 0.1 });
+    assert.ok(free.length > 300);
+    for (const { radius, s_radius, half_angle, points, inlier_share, rms_steps } of free) {
+      assert.ok(Math.abs(radius - 0.05) < 6 * s_radius && s_radius > 0, `${radius} ± ${s_radius}`);
+      assert.equal(half_angle, '');
+      assert.ok(points > 100 && inlier_share > 0.5 && rms_steps > 0.1, `${points} ${inlier_share} ${rms_steps}`);
+    }
+    const known = track({ name: 'bob', method: 'sphere', radius_m: 0.05 });
+    assert.ok(known.every(({ radius, srx }) => radius === '' && srx === ''), 'what was given or is not shown is empty');
+  });
+
   const change_with = (name, preprocess) => {
     const file = path.join(scratch, name);
     writeFileSync(file, JSON.stringify({ objects: [{ name: 'moved', method: 'change' }], preprocess }));
@@ -279,6 +293,16 @@ describe('a simulated pendulum', () => {
   test('that is not there', () => {
     refused(analyse(path.join(scratch, 'nowhere')), 1, /nowhere/, /not there/);
   });
+});
+
+const bench = path.join(path.dirname(program), 'bench');
+test('the benchmark lists what it can measure', { skip: existsSync(bench) ? false : `no ${bench}` }, () => {
+  const list = spawnSync(bench, ['--list'], { encoding: 'utf8' });
+  assert.equal(list.status, 0, list.stderr);
+  const names = list.stdout.trimEnd().split('\n');
+  assert.ok(names.length > 10 && names.includes('octree change'), list.stdout);
+  const some = spawnSync(bench, ['--list', '--filter', 'octree'], { encoding: 'utf8' });
+  assert.equal(some.stdout, 'octree change\n');
 });
 
 describe('real frames', { skip: existsSync(shared) ? false : `no ${shared}` }, () => {

@@ -82,8 +82,8 @@ TEST(ChainOnSimulatedRig, VoxelsFindTheBobAndNothingElse) {
         swinging += truth.motion == simulate::Motion::swinging ? 1 : 0;
         for (const auto& sample : chain.track(frame).value()) {
             things = std::max(things, sample.identity);
-            const bool counts = truth.motion == simulate::Motion::swinging &&
-                                sample.status == TrackStatus::tracked;
+            const bool counts =
+                truth.motion == simulate::Motion::swinging && sample.status == TrackStatus::tracked;
             seen += counts ? 1 : 0;
         }
         return {};

@@ -100,7 +100,10 @@ INSTANTIATE_TEST_SUITE_P(
             R"({"change": {"threshold": 3}})",
             "preprocess.change.threshold",
             "did you mean threshold_steps?"},
-        Wrong{R"({"change": {"voxel_m": 0.1}})", "preprocess.change.voxel_m", "Valid"},
+        Wrong{
+            R"({"change": {"voxel_m": 0.1}})",
+            "preprocess.change.voxel_m",
+            "valid: method, threshold_steps"},
         Wrong{
             R"({"change": {"threshold_steps": -1}})",
             "preprocess.change.threshold_steps",
