@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <string_view>
 
 #include <Eigen/Geometry>
@@ -26,6 +27,15 @@ struct TrackQuality {
     std::string_view why_lost;
 };
 
+/// How large a shape is, where that was free and measured; NaN elsewhere.
+struct ShapeSize {
+    static constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+    double radius_m = kNone;  ///< sphere and cylinder
+    double radius_u = kNone;
+    double half_angle_rad = kNone;  ///< cone: between its axis and its surface
+    double half_angle_u = kNone;
+};
+
 /// One object in one frame, in the depth camera's frame.
 struct TrackSample {
     TimeNs t = 0;
@@ -38,6 +48,7 @@ struct TrackSample {
     Eigen::Quaterniond q_cam_obj = Eigen::Quaterniond::Identity();
     Matrix6d covariance = Matrix6d::Zero();  ///< position (m²), then rotation vector (rad²)
     TrackQuality quality;
+    ShapeSize size;
 };
 
 }  // namespace kinectlab

@@ -22,6 +22,7 @@ struct MotionSample {
     Eigen::Vector3d a_lab = Eigen::Vector3d::Zero();  ///< m/s²
     Eigen::Vector3d w_lab = Eigen::Vector3d::Zero();  ///< rad/s
     TrackQuality quality;
+    ShapeSize size;
 
     [[nodiscard]] Eigen::Vector3d sigma_p() const {
         return covariance.diagonal().head<3>().cwiseSqrt();

@@ -52,6 +52,7 @@ void fill(MotionSample& sample, const MotionSample& a, const MotionSample& b) {
     sample.covariance.topLeftCorner<3, 3>() +=
         kTrustInBend * kTrustInBend * bend * bend.transpose();
     sample.quality = {};
+    sample.size = {};
 }
 
 }  // namespace

@@ -33,6 +33,7 @@ MotionSample in_lab(const TrackSample& sample, const Eigen::Isometry3d& T_lab_ca
         motion.q_lab_obj = Eigen::Quaterniond(T_lab_cam.linear()) * sample.q_cam_obj;
     motion.covariance = rotated(sample.covariance, T_lab_cam.linear());
     motion.quality = sample.quality;
+    motion.size = sample.size;
     return motion;
 }
 

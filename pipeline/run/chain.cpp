@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "pipeline/core/number_text.hpp"
 #include "pipeline/preprocess/preprocessing.hpp"
 #include "pipeline/track/tracker.hpp"
 
@@ -31,7 +32,7 @@ Result<void> check(const ChainSettings& settings) {
             return fail(
                 ErrorCode::invalid_argument,
                 "camera",
-                "a focal length, depth unit or noise is " + std::to_string(value),
+                "a focal length, depth unit or noise is " + number_text(value),
                 "all of them are above 0"
             );
     return check(settings.preprocess);

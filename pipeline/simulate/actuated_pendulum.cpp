@@ -4,6 +4,8 @@
 #include <numbers>
 #include <string>
 
+#include "pipeline/core/number_text.hpp"
+
 namespace kinectlab::simulate {
 namespace {
 
@@ -75,7 +77,7 @@ Result<void> ActuatedPendulum::apply(const Command& command) {
                 return fail(
                     ErrorCode::invalid_argument,
                     "angle_rad",
-                    "is " + std::to_string(command.angle_rad),
+                    "is " + number_text(command.angle_rad),
                     "give an angle from -1.047 to 1.047 rad (60 degrees)"
                 );
             move_arm(

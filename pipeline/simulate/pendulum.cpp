@@ -4,6 +4,8 @@
 #include <numbers>
 #include <string>
 
+#include "pipeline/core/number_text.hpp"
+
 namespace kinectlab::simulate {
 namespace {
 
@@ -15,8 +17,8 @@ Result<void> check_range(const char* field, double value, double low, double hig
     return fail(
         ErrorCode::invalid_argument,
         field,
-        "is " + std::to_string(value),
-        "give a number from " + std::to_string(low) + " to " + std::to_string(high)
+        "is " + number_text(value),
+        "give a number from " + number_text(low) + " to " + number_text(high)
     );
 }
 

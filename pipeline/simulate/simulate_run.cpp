@@ -5,6 +5,8 @@
 #include <numbers>
 #include <string>
 
+#include "pipeline/core/number_text.hpp"
+
 namespace kinectlab::simulate {
 namespace {
 
@@ -17,14 +19,14 @@ Result<void> check(const RunSettings& settings) {
         return fail(
             ErrorCode::invalid_argument,
             "amplitude_deg",
-            "is " + std::to_string(settings.amplitude_rad * 180.0 / std::numbers::pi),
+            "is " + number_text(settings.amplitude_rad * 180.0 / std::numbers::pi),
             "give an angle from 0.01 to 60"
         );
     if (!(settings.seconds >= 0.1 && settings.seconds <= kLongestRun))
         return fail(
             ErrorCode::invalid_argument,
             "seconds",
-            "is " + std::to_string(settings.seconds),
+            "is " + number_text(settings.seconds),
             "give a number from 0.1 to 86400"
         );
     if (!(settings.rest_s >= 0.0 && settings.held_s >= 0.0))

@@ -6,6 +6,7 @@
 #include <optional>
 #include <utility>
 
+#include "pipeline/core/number_text.hpp"
 #include "pipeline/features/colour_constancy.hpp"
 #include "pipeline/features/two_cameras.hpp"
 #include "pipeline/track/colour_bounds.hpp"
@@ -351,7 +352,7 @@ Result<void> check_range(
     return fail(
         ErrorCode::invalid_argument,
         field,
-        "is [" + std::to_string(low) + ", " + std::to_string(high) + "]",
+        "is [" + number_text(low) + ", " + number_text(high) + "]",
         std::string("give [lowest, highest] from 0 to ") + (most > 1.0 ? "360" : "1") +
             (may_wrap ? "; lowest > highest goes through red" : "")
     );

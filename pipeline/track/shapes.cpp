@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "pipeline/core/number_text.hpp"
 #include "pipeline/track/shape_borders.hpp"
 #include "pipeline/track/shape_grid.hpp"
 #include "pipeline/track/shape_pair.hpp"
@@ -295,7 +296,7 @@ Result<ShapeDetector> ShapeDetector::create(
     const RgbdCamera& camera, const ShapesSettings& settings
 ) {
     const auto refuse = [](const char* field, double value, const char* cure) {
-        return fail(ErrorCode::invalid_argument, field, "is " + std::to_string(value), cure);
+        return fail(ErrorCode::invalid_argument, field, "is " + number_text(value), cure);
     };
     if (std::none_of(settings.kinds.begin(), settings.kinds.end(), [](bool kind) { return kind; }))
         return refuse("kinds", 0, "ask for at least one kind of shape");

@@ -89,10 +89,7 @@ Result<std::vector<RigConfig>> read_rigs(const json& list) {
 Result<std::string> check_log_level(const std::string& field, const std::string& level) {
     if (std::find(kLogLevels.begin(), kLogLevels.end(), level) != kLogLevels.end()) return level;
     return fail(
-        ErrorCode::invalid_argument,
-        field,
-        "is '" + level + "'",
-        "did you mean " + nearest_name(level, kLogLevels) + "? Valid: debug, info, warn, error"
+        ErrorCode::invalid_argument, field, "is '" + level + "'", did_you_mean(level, kLogLevels)
     );
 }
 

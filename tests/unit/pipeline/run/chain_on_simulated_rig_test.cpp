@@ -64,5 +64,34 @@ TEST(ChainOnSimulatedRig, FollowsTheBobWithAKinectsNoise) {
     EXPECT_LT(outcome.mean_square_over_claimed, 2.0);
 }
 
+/// Of a room whose wall is three metres away, and of a bob that swings.
+TEST(ChainOnSimulatedRig, VoxelsFindTheBobAndNothingElse) {
+    simulate::RunSettings run;
+    run.rig.with_colour = false;
+    run.seconds = 6.0;
+    run.rig.seed = 7;
+    const auto rig = simulate::SimulatedRig::create(run.rig);
+    PreprocessSettings settings;
+    settings.change.method = ChangeMethod::octree;
+    const ObjectSpec moved{"moved", ChangeTrackSettings{}};
+    Chain chain = std::move(Chain::create({rig->camera(), {moved}, settings}).value());
+    std::size_t swinging = 0, seen = 0;
+    std::uint32_t things = 0;
+    const auto sink = [&](const RgbdFrame& frame, const simulate::Truth& truth) -> Result<void> {
+        if (to_seconds(frame.t - run.rig.start) < 1.5) return chain.learn(frame);
+        swinging += truth.motion == simulate::Motion::swinging ? 1 : 0;
+        for (const auto& sample : chain.track(frame).value()) {
+            things = std::max(things, sample.identity);
+            const bool counts =
+                truth.motion == simulate::Motion::swinging && sample.status == TrackStatus::tracked;
+            seen += counts ? 1 : 0;
+        }
+        return {};
+    };
+    ASSERT_TRUE(simulate::simulate_run(run, sink));
+    EXPECT_EQ(things, 1U);
+    EXPECT_GT(seen, swinging * 9 / 10);
+}
+
 }  // namespace
 }  // namespace kinectlab
