@@ -90,7 +90,7 @@ ObjectFit for_plots(
 /// A swing that is too short looks like another motion: tell how short it is
 /// instead. `what` where it was long enough, or failed for another reason.
 Error blame_length(
-    Error what, const std::vector<SwingSample>& samples, const PendulumSettings& settings
+    Error what, const std::vector<PositionSample>& samples, const PendulumSettings& settings
 ) {
     if (what.message != kAnotherMotion || !settings.on_earth) return what;
     constexpr double kFewest = 3.0;

@@ -10,7 +10,7 @@ constexpr double kRest = 1.0 / 8.0;  // of the path's width; a swing moves a qua
 constexpr double kOutliers = 0.02;   // on either side
 
 /// From outlier to outlier.
-Eigen::Vector2d width_of(std::span<const SwingSample> samples) {
+Eigen::Vector2d width_of(std::span<const PositionSample> samples) {
     Eigen::Vector2d width = Eigen::Vector2d::Zero();
     for (int axis = 0; axis < 2; ++axis) {
         std::vector<double> places;
@@ -27,7 +27,7 @@ Eigen::Vector2d width_of(std::span<const SwingSample> samples) {
 
 }  // namespace
 
-double longest_motion_s(std::span<const SwingSample> samples, double period) {
+double longest_motion_s(std::span<const PositionSample> samples, double period) {
     if (samples.empty()) return 0.0;
     const Eigen::Vector2d width = width_of(samples);
     const int axis = width.x() > width.y() ? 0 : 1;

@@ -18,6 +18,7 @@
 #include "server/experiments/share_dir.hpp"
 #include "server/net/server.hpp"
 #include "server/net/static_files.hpp"
+#include "server/rig/device.hpp"
 
 namespace kinectlab::commands {
 namespace {
