@@ -145,7 +145,7 @@ describe('a simulated pendulum', () => {
     assert.equal(result.provenance.camera.depth.fx, 580);
     assert.deepEqual(JSON.parse(readFileSync(path.join(out, 'result.json'), 'utf8')), result);
     assert.equal(rows(readFileSync(path.join(out, 'poses.csv'), 'utf8')).length, summary.frames);
-    assert.match(readFileSync(path.join(out, 'fit.csv'), 'utf8'), /^t_ns,x,y,z,fit_x/);
+    assert.match(readFileSync(path.join(out, 'fit.csv'), 'utf8'), /^object,t_ns,x,y,z,fit_x/);
   });
 
   test('is analysed with the length that its experiment.json tells', () => {
