@@ -79,11 +79,7 @@ Result<void> ActuatedPendulum::apply(const Command& command) {
                     "is " + std::to_string(command.value),
                     "give an angle from -1.047 to 1.047 rad (60 degrees)"
                 );
-            move_arm(
-                Motion::moving,
-                command.value * Eigen::Vector2d::UnitX(),
-                kDisplaceStiffness
-            );
+            move_arm(Motion::moving, command.value * Eigen::Vector2d::UnitX(), kDisplaceStiffness);
             return {};
         case Action::hold:
             hold_here(Motion::held);

@@ -42,10 +42,10 @@ struct Body {
     std::string name;
     Shape shape;
     Material material = Material::bob;
-    Eigen::Vector3d p_lab = Eigen::Vector3d::Zero();                      ///< m
-    Eigen::Quaterniond q_lab_body = Eigen::Quaterniond::Identity();       ///< body → lab
-    Eigen::Vector3d v_lab = Eigen::Vector3d::Zero();                      ///< of the centre, m/s
-    Eigen::Vector3d w_lab = Eigen::Vector3d::Zero();                      ///< rad/s
+    Eigen::Vector3d p_lab = Eigen::Vector3d::Zero();                 ///< m
+    Eigen::Quaterniond q_lab_body = Eigen::Quaterniond::Identity();  ///< body → lab
+    Eigen::Vector3d v_lab = Eigen::Vector3d::Zero();                 ///< of the centre, m/s
+    Eigen::Vector3d w_lab = Eigen::Vector3d::Zero();                 ///< rad/s
 };
 
 /// A thin straight string from `from` to `to`; drawn where the first end is above the second.

@@ -13,8 +13,8 @@ namespace {
 constexpr std::array kRanges = {
     ParameterRange{"mass_a_kg", 0.02, 2.0, 0.3},
     ParameterRange{"mass_b_kg", 0.02, 2.0, 0.2},
-    ParameterRange{"radius_a_m", 0.025, 0.06, 0.05},
-    ParameterRange{"radius_b_m", 0.025, 0.06, 0.04},
+    ParameterRange{"radius_a_m", 0.025, 0.06, 0.045},
+    ParameterRange{"radius_b_m", 0.025, 0.06, 0.045},
     ParameterRange{"speed_m_s", 0.05, 1.5, 0.5},
     ParameterRange{"restitution", 0.0, 1.0, 0.9},
     ParameterRange{"offset_m", -0.1, 0.1, 0.0},
@@ -22,6 +22,9 @@ constexpr std::array kRanges = {
 
 constexpr double kStartA = -0.62;
 constexpr double kStartB = 0.08;
+// A comes into the picture before B: whoever follows both meets them in that order.
+constexpr double kParkedA = -1.1;
+constexpr double kParkedB = 2.8;
 constexpr double kGap = 0.01;  ///< between table and the larger ball
 constexpr double kBorderX = 0.74;
 constexpr double kBorderY = 0.34;
@@ -38,7 +41,8 @@ struct Glide {
             if (speed == 0.0) return std::numeric_limits<double>::infinity();
             return std::max(0.0, (std::copysign(border, speed) - place) / speed);
         };
-        return since_s + std::min(reach(from.x(), v.x(), kBorderX), reach(from.y(), v.y(), kBorderY));
+        return since_s +
+               std::min(reach(from.x(), v.x(), kBorderX), reach(from.y(), v.y(), kBorderY));
     }
     void move(double t_s, Body& body) const {
         const double end = caught_s();
@@ -61,7 +65,7 @@ std::vector<Body> start_of(const ParameterMap& p, double a_x, double b_x) {
 class Collision final : public CarriedApparatus {
 public:
     explicit Collision(const ParameterMap& p)
-        : CarriedApparatus(start_of(p, -1.6, 1.6)), parameters_(p) {}
+        : CarriedApparatus(start_of(p, kParkedA, kParkedB)), parameters_(p) {}
 
     Furniture furniture() const override { return {true, std::nullopt, {}}; }
 

@@ -13,11 +13,12 @@ namespace kinectlab::simulate {
 ///   m_B) u
 ///
 /// A ball is caught where it reaches the table's border, |x| = 0.74 or |y| = 0.34 m, and rests
-/// there, free. Value: 0. An offset beside which A passes B is refused.
+/// there, free. The arm brings A into the picture first. Value: 0. An offset beside which A passes
+/// B is refused.
 ///
 /// | parameter | range | usual |
 /// | mass_a_kg, mass_b_kg | 0.02 to 2 | 0.3, 0.2 |
-/// | radius_a_m, radius_b_m | 0.025 to 0.06 | 0.05, 0.04 |
+/// | radius_a_m, radius_b_m | 0.025 to 0.06 | 0.045, 0.045 |
 /// | speed_m_s | 0.05 to 1.5 | 0.5 |
 /// | restitution, e | 0 to 1 | 0.9 |
 /// | offset_m, of B towards +y | -0.1 to 0.1 | 0 |

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "pipeline/simulate/room_picture.hpp"
 #include "pipeline/simulate/shading.hpp"
 
 namespace kinectlab::simulate {
@@ -10,66 +11,7 @@ namespace {
 
 constexpr double kBallGloss = 1.0;
 constexpr double kBoxGloss = 0.2;
-constexpr float kNoise = 1.7F;      ///< counts of 255
-constexpr float kContrast = 0.05F;  ///< between samples; above it a pixel takes more
-
-/// One camera on one room.
-struct View {
-    const Room& room;
-    const Pinhole& camera;
-    const Eigen::Isometry3d& T_lab_colour;
-
-    [[nodiscard]] Radiance sample(double u, double v) const {
-        const Eigen::Vector3d eye = T_lab_colour.translation();
-        const Eigen::Vector3d ray = T_lab_colour.linear() * camera.ray(u, v);
-        const Hit hit = room.cast(eye, ray);
-        if (hit.material == Material::none) return Radiance::Zero();
-        const double place_in_picture = 16.0 * (v * camera.width + u);
-        const auto grain = static_cast<std::uint64_t>(std::llround(place_in_picture));
-        return shade_room(room, hit, eye + hit.t * ray, eye, grain).cwiseMin(1.0F);
-    }
-
-    /// Mean of 4x4 samples.
-    [[nodiscard]] Radiance fine_pixel(int u, int v) const {
-        Radiance sum = Radiance::Zero();
-        for (int i = 0; i < 16; ++i)
-            sum += sample(u + (i % 4 - 1.5) / 4.0, v + (i / 4 - 1.5) / 4.0);
-        return sum / 16.0F;
-    }
-};
-
-/// Two samples a pixel on its diagonal, which meet any line half a pixel wide; sixteen where these
-/// differ from each other or from a neighbour's.
-std::vector<Radiance> sample_room(const View& view) {
-    const auto width = static_cast<std::size_t>(view.camera.width);
-    const std::size_t pixels = width * static_cast<std::size_t>(view.camera.height);
-    const auto column = [width](std::size_t i) {
-        return static_cast<int>(i % width);
-    };
-    const auto row = [width](std::size_t i) {
-        return static_cast<int>(i / width);
-    };
-    std::vector<Radiance> mean(pixels);
-    std::vector<bool> fine(pixels);
-    const auto differ = [](const Radiance& a, const Radiance& b) {
-        return (a - b).cwiseAbs().maxCoeff() > kContrast;
-    };
-    for (std::size_t i = 0; i < pixels; ++i) {
-        const Radiance upper = view.sample(column(i) - 0.25, row(i) - 0.25);
-        const Radiance lower = view.sample(column(i) + 0.25, row(i) + 0.25);
-        mean[i] = 0.5F * (upper + lower);
-        fine[i] = differ(upper, lower);
-    }
-    for (std::size_t i = 0; i < pixels; ++i) {
-        for (const std::size_t next : {i + 1, i + width}) {
-            if (next >= pixels || (next == i + 1 && column(next) == 0)) continue;
-            if (differ(mean[i], mean[next])) fine[i] = fine[next] = true;
-        }
-    }
-    for (std::size_t i = 0; i < pixels; ++i)
-        if (fine[i]) mean[i] = view.fine_pixel(column(i), row(i));
-    return mean;
-}
+constexpr float kNoise = 1.7F;  ///< counts of 255
 
 /// Bounds of a level square's picture, cut to the image; empty if it is not all in front.
 PixelRect picture_of_square(
@@ -103,18 +45,12 @@ ColourRenderer::ColourRenderer(
     const Room& room, const Pinhole& camera, const Eigen::Isometry3d& T_lab_colour
 )
     : camera_(camera), T_lab_colour_(T_lab_colour), has_table_(room.has_table()) {
-    room_.reserve(static_cast<std::size_t>(camera.width) * camera.height * 3);
-    for (const Radiance& pixel : sample_room({room, camera, T_lab_colour}))
-        for (const float channel : pixel)
-            room_.push_back(to_srgb(channel));
+    room_ = picture_of_room(room, camera, T_lab_colour);
     now_ = room_;
 }
 
 void ColourRenderer::render(
-    const MovingParts& moving,
-    const FrameRandom& random,
-    bool noisy,
-    std::vector<std::uint8_t>& rgb
+    const MovingParts& moving, const FrameRandom& random, bool noisy, std::vector<std::uint8_t>& rgb
 ) {
     for (const PixelRect& rect : drawn_)
         restore(rect);
@@ -170,8 +106,7 @@ void ColourRenderer::draw_shadow(const Eigen::Vector3d& centre, double radius) {
     if (below <= 0.0 || from_lamp.z() >= 0.0) return;
     const Eigen::Vector3d middle = centre - below / from_lamp.z() * from_lamp;
     const double penumbra = kLampHalfSize * below / -from_lamp.z();
-    const double reach =
-        2.5 * radius + 1.3 * penumbra + (middle - centre).head<2>().norm();
+    const double reach = 2.5 * radius + 1.3 * penumbra + (middle - centre).head<2>().norm();
     const PixelRect rect = picture_of_square(camera_, T_lab_colour_.inverse(), middle, reach);
     const Eigen::Vector3d& eye = T_lab_colour_.translation();
     PixelRect drawn{rect.right, rect.bottom, rect.left, rect.top};
@@ -238,8 +173,7 @@ void ColourRenderer::draw_bodies(const std::vector<Body>& bodies) {
         return (a->p_lab - eye).squaredNorm() > (b->p_lab - eye).squaredNorm();
     });
     for (const Body* body : order) {
-        const PixelRect rect =
-            picture_of(camera_, body->shape, T_cam_body_of(T_colour_lab, *body));
+        const PixelRect rect = picture_of(camera_, body->shape, T_cam_body_of(T_colour_lab, *body));
         if (rect.empty()) continue;
         if (std::holds_alternative<Cuboid>(body->shape))
             draw_box(*body, rect);
@@ -288,8 +222,7 @@ void ColourRenderer::draw_box(const Body& body, const PixelRect& rect) {
             int covered = 0;
             for (int i = 0; i < 4; ++i) {
                 const Eigen::Vector3d ray =
-                    R_body_colour *
-                    camera_.ray(u + (i % 2 - 0.5) / 2.0, v + (i / 2 - 0.5) / 2.0);
+                    R_body_colour * camera_.ray(u + (i % 2 - 0.5) / 2.0, v + (i / 2 - 0.5) / 2.0);
                 const auto entry = enter_box(-half, half, eye_body, ray);
                 if (!entry) continue;
                 const Eigen::Vector3d normal = entry->sign * Eigen::Vector3d::Unit(entry->axis);

@@ -10,7 +10,8 @@
 namespace kinectlab::simulate {
 
 /// The colour camera's picture. The room is rendered once, at some cost; a frame then draws the
-/// bodies, their shadows on the table and the strings into it, all with smooth edges, and adds the sensor's noise.
+/// bodies, their shadows on the table and the strings into it, all with smooth edges, and adds the
+/// sensor's noise.
 class ColourRenderer {
 public:
     ColourRenderer(const Room& room, const Pinhole& camera, const Eigen::Isometry3d& T_lab_colour);

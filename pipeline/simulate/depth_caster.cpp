@@ -61,7 +61,9 @@ PixelRect picture_of_box(
     Eigen::Array2d low = Eigen::Array2d::Constant(std::numeric_limits<double>::infinity());
     Eigen::Array2d high = -low;
     for (int corner = 0; corner < 8; ++corner) {
-        const Eigen::Array3d side(corner & 1 ? 0.5 : -0.5, corner & 2 ? 0.5 : -0.5, corner & 4 ? 0.5 : -0.5);
+        const Eigen::Array3d side(
+            corner & 1 ? 0.5 : -0.5, corner & 2 ? 0.5 : -0.5, corner & 4 ? 0.5 : -0.5
+        );
         const Eigen::Vector3d p = T_cam_body * Eigen::Vector3d(side * size.array());
         if (p.z() < 0.05) return {};
         const Eigen::Array2d uv = camera.project(p).array();
@@ -147,9 +149,7 @@ void DepthCaster::draw(int u, int v, double depth, double facing) {
     now_.grazing[i] = grazing_of(facing);
 }
 
-void DepthCaster::draw_sphere(
-    const PixelRect& rect, const Eigen::Vector3d& centre, double radius
-) {
+void DepthCaster::draw_sphere(const PixelRect& rect, const Eigen::Vector3d& centre, double radius) {
     const double beyond = centre.squaredNorm() - radius * radius;
     for (int v = rect.top; v < rect.bottom; ++v) {
         for (int u = rect.left; u < rect.right; ++u) {

@@ -19,9 +19,7 @@ struct PixelRect {
 );
 
 /// Where the body stands in a camera's frame.
-[[nodiscard]] Eigen::Isometry3d T_cam_body_of(
-    const Eigen::Isometry3d& T_cam_lab, const Body& body
-);
+[[nodiscard]] Eigen::Isometry3d T_cam_body_of(const Eigen::Isometry3d& T_cam_lab, const Body& body);
 
 /// One pixel that a string covers.
 struct StringPixel {

@@ -21,10 +21,10 @@ constexpr std::array kRanges = {
 constexpr double kLength = 1.30;
 constexpr double kWidth = 0.30;
 constexpr double kThickness = 0.02;
-constexpr double kLowEnd = 0.56;        ///< height of its top side there
+constexpr double kLowEnd = 0.56;  ///< height of its top side there
 constexpr double kStopThickness = 0.02;
 constexpr double kStopHeight = 0.05;
-constexpr double kStart = 0.09;         ///< of the ball's touching point, from the upper end
+constexpr double kStart = 0.09;  ///< of the ball's touching point, from the upper end
 constexpr double kPost = 0.04;
 
 std::vector<Body> parked(double radius) {
@@ -102,8 +102,7 @@ protected:
         const bool caught = t_s >= caught_s;
         const double t = std::min(t_s, caught_s);
         ball.p_lab = start_.p_lab + 0.5 * acceleration_ * t * t * down;
-        ball.q_lab_body =
-            Eigen::AngleAxisd(0.5 * spin_up_ * t * t, across) * start_.q_lab_body;
+        ball.q_lab_body = Eigen::AngleAxisd(0.5 * spin_up_ * t * t, across) * start_.q_lab_body;
         ball.v_lab = caught ? Eigen::Vector3d(Eigen::Vector3d::Zero()) : acceleration_ * t * down;
         ball.w_lab = caught ? Eigen::Vector3d(Eigen::Vector3d::Zero()) : spin_up_ * t * across;
     }

@@ -111,9 +111,8 @@ Radiance box_paint(const Eigen::Vector3d& p, const Eigen::Vector3d& normal) {
     constexpr double kSquare = 0.01;
     const double u = std::floor(p[(axis + 1) % 3] / kSquare);
     const double v = std::floor(p[(axis + 2) % 3] / kSquare);
-    const double tone = lattice(
-        static_cast<std::int64_t>(u), static_cast<std::int64_t>(v) + 1000 * (axis + 1)
-    );
+    const double tone =
+        lattice(static_cast<std::int64_t>(u), static_cast<std::int64_t>(v) + 1000 * (axis + 1));
     return static_cast<float>(0.35 + 0.65 * tone) * hues[face];
 }
 
@@ -148,9 +147,7 @@ Radiance albedo(Material material, const Eigen::Vector3d& p, const Eigen::Vector
     }
 }
 
-Radiance paint_of(
-    Material material, const Eigen::Vector3d& p, const Eigen::Vector3d& normal_body
-) {
+Radiance paint_of(Material material, const Eigen::Vector3d& p, const Eigen::Vector3d& normal_body) {
     switch (material) {
         case Material::bob:
             return {0.66F, 0.022F, 0.035F};

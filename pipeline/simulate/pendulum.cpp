@@ -104,8 +104,7 @@ PendulumEquation::PendulumEquation(const PendulumParameters& p)
 }
 
 Eigen::Vector3d PendulumEquation::acceleration(const SwingState& s) const {
-    Eigen::Vector3d pull =
-        gravity_ - 2.0 * earth_rate_.cross(s.n_dot) - 2.0 * damping_ * s.n_dot;
+    Eigen::Vector3d pull = gravity_ - 2.0 * earth_rate_.cross(s.n_dot) - 2.0 * damping_ * s.n_dot;
     if (quadratic_damping_ > 0.0) pull -= quadratic_damping_ * s.n_dot.norm() * s.n_dot;
     return pull - (s.n.dot(pull) + s.n_dot.squaredNorm()) * s.n;
 }

@@ -12,11 +12,11 @@ namespace kinectlab::simulate {
 
 /// A solid sphere on a string that it turns with. A density or mass of 0 stands for no such effect.
 struct PendulumParameters {
-    double length_m = 1.0;         ///< pivot to the bob's centre; 0.2 to 3
-    double bob_radius_m = 0.05;    ///< 0.01 to 0.12, and less than half the length
-    double gravity_m_s2 = 9.81;    ///< 0.5 to 30
-    double latitude_deg = 45.0;    ///< -90 to 90, north is positive
-    double damping_per_s = 0.002;  ///< amplitude decays as exp(-damping t); 0 to 1
+    double length_m = 1.0;                   ///< pivot to the bob's centre; 0.2 to 3
+    double bob_radius_m = 0.05;              ///< 0.01 to 0.12, and less than half the length
+    double gravity_m_s2 = 9.81;              ///< 0.5 to 30
+    double latitude_deg = 45.0;              ///< -90 to 90, north is positive
+    double damping_per_s = 0.002;            ///< amplitude decays as exp(-damping t); 0 to 1
     double quadratic_damping_per_rad = 0.0;  ///< n'' gets -β|n'|n'; 0 to 1
     double sideways_m_s = 0.0;       ///< across the plane of the swing at the release; -0.5 to 0.5
     double bob_density_kg_m3 = 0.0;  ///< 0 to 25000

@@ -46,8 +46,8 @@ public:
               (p.at("ball_density_kg_m3") * radius_)
           ) {
         const double elevation = p.at("elevation_deg") * std::numbers::pi / 180.0;
-        launch_ = p.at("speed_m_s") *
-                  Eigen::Vector3d(std::cos(elevation), 0.0, std::sin(elevation));
+        launch_ =
+            p.at("speed_m_s") * Eigen::Vector3d(std::cos(elevation), 0.0, std::sin(elevation));
     }
 
     Furniture furniture() const override {

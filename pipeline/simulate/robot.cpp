@@ -89,7 +89,8 @@ protected:
         place = place.after(*leg, left);
         robot.p_lab.head<2>() = Eigen::Vector2d(place.x, place.y);
         robot.q_lab_body = Eigen::AngleAxisd(place.heading, Eigen::Vector3d::UnitZ());
-        robot.v_lab = leg->speed_m_s * Eigen::Vector3d(std::cos(place.heading), std::sin(place.heading), 0.0);
+        robot.v_lab =
+            leg->speed_m_s * Eigen::Vector3d(std::cos(place.heading), std::sin(place.heading), 0.0);
         robot.w_lab = leg->rate_rad_s * Eigen::Vector3d::UnitZ();
     }
 

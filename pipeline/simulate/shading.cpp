@@ -83,8 +83,8 @@ Radiance shade_room(
         // A coat of varnish mirrors the wall where one looks at it flatly.
         const double cosine = hit.normal.dot((eye - p).normalized());
         const double mirror = hit.material == Material::table ? fresnel(cosine, 0.04) : 0.03;
-        leaving +=
-            static_cast<float>(0.55 * mirror * openness(room, hit, p)) * Radiance(0.50F, 0.55F, 0.57F);
+        leaving += static_cast<float>(0.55 * mirror * openness(room, hit, p)) *
+                   Radiance(0.50F, 0.55F, 0.57F);
     }
     return kExposure * leaving;
 }
@@ -109,9 +109,8 @@ Radiance shade_body(
         const double off = std::max(std::abs(on_lamp.x()), std::abs(on_lamp.y())) / kLampHalfSize;
         around += static_cast<float>(14.0 * std::clamp(1.8 - off, 0.0, 1.0)) * Radiance::Ones();
     }
-    return kExposure *
-           (paint.cwiseProduct(light.direct + light.ambient) +
-            static_cast<float>(gloss * mirror) * around);
+    return kExposure * (paint.cwiseProduct(light.direct + light.ambient) +
+                        static_cast<float>(gloss * mirror) * around);
 }
 
 float light_left_by(const Eigen::Vector3d& centre, double radius, const Eigen::Vector3d& p) {

@@ -18,8 +18,8 @@ struct ActuatorState {
     double value = 0.0;
 };
 
-/// Moves the apparatus of one rig. A command that returns was sent, not obeyed: whoever gives one reads
-/// state() until it shows the effect. Error unavailable where the device is gone or refuses.
+/// Moves the apparatus of one rig. A command that returns was sent, not obeyed: whoever gives one
+/// reads state() until it shows the effect. Error unavailable where the device is gone or refuses.
 /// Not thread-safe: the rig's worker owns it.
 class Actuator {
 public:

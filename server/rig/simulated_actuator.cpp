@@ -30,9 +30,8 @@ class SimulatedActuator final : public Actuator {
 public:
     explicit SimulatedActuator(OpenniSource& source) : source_(source) {}
 
-    Result<void> configure(
-        const std::string& apparatus, const lab::Parameters& parameters
-    ) override {
+    Result<void> configure(const std::string& apparatus, const lab::Parameters& parameters)
+        override {
         const auto settings = simulate::settings_for(apparatus, parameters);
         if (!settings) return tl::unexpected(settings.error());
         // The device can only say no; why it would is found out here.

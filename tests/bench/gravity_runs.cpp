@@ -39,14 +39,14 @@ simulate::RunSettings run_settings(std::uint64_t seed, simulate::NoiseModel nois
 Trajectory tracked_run(std::uint64_t seed, simulate::NoiseModel noise) {
     const simulate::RunSettings run = run_settings(seed, noise);
     const auto rig = or_throw(simulate::SimulatedRig::create(run.rig));
-    const ObjectSpec bob{"bob", SphereSettings{.radius_m = simulate::PendulumParameters().bob_radius_m}};
+    const ObjectSpec bob{
+        "bob", SphereSettings{.radius_m = simulate::PendulumParameters().bob_radius_m}};
     Chain chain = or_throw(Chain::create({rig.camera(), {bob}}));
     std::vector<TrackSample> samples;
     or_throw(simulate::simulate_run(
         run,
         [&](const RgbdFrame& frame, const simulate::Truth& truth) -> Result<void> {
-            if (truth.motion != simulate::Motion::free &&
-                truth.motion != simulate::Motion::held)
+            if (truth.motion != simulate::Motion::free && truth.motion != simulate::Motion::held)
                 return chain.learn(frame);
             auto found = chain.track(frame);
             if (!found) return tl::unexpected(found.error());

@@ -55,9 +55,7 @@ openni::Status command(openni::Device& device, Action action, double value = 0.0
 }
 
 openni::Status make(openni::Device& device, const std::string& apparatus) {
-    return device.setProperty(
-        kApparatus, apparatus.data(), static_cast<int>(apparatus.size())
-    );
+    return device.setProperty(kApparatus, apparatus.data(), static_cast<int>(apparatus.size()));
 }
 
 std::string apparatus_of(const openni::Device& device) {
@@ -176,7 +174,11 @@ TEST_F(SimulatedRigDriver, BecomesAnotherApparatus) {
     ASSERT_EQ(command(device, Action::release), openni::STATUS_OK);
     ASSERT_TRUE(eventually([&] { return state_of(device).bodies[1].v_lab_m_s[0] > 0.1; }));
     for (const char* wrong :
-         {"colision", "collision mass=1", "collision mass_a_kg=1e9", "collision mass_a_kg", "",
+         {"colision",
+          "collision mass=1",
+          "collision mass_a_kg=1e9",
+          "collision mass_a_kg",
+          "",
           "incline friction=nan"})
         EXPECT_EQ(make(device, wrong), openni::STATUS_BAD_PARAMETER) << wrong;
     const std::string endless(kLongestApparatus + 1, ' ');

@@ -20,7 +20,8 @@ Outcome outcome_of(simulate::NoiseModel noise, double seconds) {
     run.rig.with_colour = false;
     run.seconds = seconds;
     const auto rig = simulate::SimulatedRig::create(run.rig);
-    const ObjectSpec bob{"bob", SphereSettings{.radius_m = simulate::PendulumParameters().bob_radius_m}};
+    const ObjectSpec bob{
+        "bob", SphereSettings{.radius_m = simulate::PendulumParameters().bob_radius_m}};
     Chain chain = std::move(Chain::create({rig->camera(), {bob}}).value());
     const Eigen::Isometry3d T_cam_lab = rig->T_lab_cam().inverse();
 

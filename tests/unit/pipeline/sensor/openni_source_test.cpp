@@ -118,9 +118,9 @@ TEST(OpenniSource, PropertiesPassThroughFromAnotherThread) {
     std::thread other([&] {
         fine = make(*source, "pendulum length_m=0.7");
         std::string now(simulated_rig::kLongestApparatus, '?');
-        fine = fine && source->get_property(
-                           simulated_rig::kApparatus, std::as_writable_bytes(std::span(now))
-                       );
+        fine =
+            fine &&
+            source->get_property(simulated_rig::kApparatus, std::as_writable_bytes(std::span(now)));
         fine = fine && std::string(now.c_str()) == "pendulum length_m=0.7";
     });
     RgbdFrame frame;

@@ -59,7 +59,10 @@ TEST(ActuatedPendulum, BrakesToRestWithinFourSeconds) {
     ASSERT_TRUE(pendulum.apply({Action::stop, 0.0}));
     pendulum.advance_to(3.5 + 1e-4);
     // Position and velocity go on without a jump.
-    EXPECT_LT((pendulum.truth().body().p_lab - before.body().p_lab - 1e-4 * before.body().v_lab).norm(), 1e-6);
+    EXPECT_LT(
+        (pendulum.truth().body().p_lab - before.body().p_lab - 1e-4 * before.body().v_lab).norm(),
+        1e-6
+    );
     pendulum.advance_to(7.5);
     EXPECT_EQ(pendulum.truth().motion, Motion::at_rest);
     EXPECT_TRUE(pendulum.truth().body().p_lab.isApprox(Eigen::Vector3d(0.0, 0.0, 0.9)));
@@ -84,6 +87,19 @@ TEST(ActuatedPendulum, RefusesAnglesOutOfReach) {
         EXPECT_EQ(refused.error().field, "angle_rad");
     }
     EXPECT_EQ(pendulum.truth().motion, Motion::at_rest);
+}
+
+TEST(ActuatedPendulum, IsPushedAcrossItsPlaneAtTheRelease) {
+    PendulumParameters parameters;
+    parameters.sideways_m_s = 0.03;
+    ActuatedPendulum pendulum(parameters, kPivot);
+    ASSERT_TRUE(pendulum.apply({Action::displace, 0.2}));
+    pendulum.advance_to(3.0);
+    ASSERT_TRUE(pendulum.apply({Action::release}));
+    EXPECT_TRUE(pendulum.bodies().front().v_lab.isApprox(Eigen::Vector3d(0.0, 0.03, 0.0)));
+    const double quarter = 0.5 * std::acos(-1.0) / std::sqrt(9.81);
+    pendulum.advance_to(3.0 + quarter);
+    EXPECT_NEAR(pendulum.bodies().front().p_lab.y(), 0.03 / std::sqrt(9.81), 2e-4);
 }
 
 }  // namespace

@@ -146,7 +146,8 @@ TEST(Colour, FollowsASimulatedPendulum) {
         // A ball shows its front: two thirds of the radius before its centre.
         const Eigen::Vector3d centre_cam = T_cam_lab * truth.body().p_lab;
         const Eigen::Vector3d front_cam =
-            centre_cam - 2.0 / 3.0 * simulate::PendulumParameters().bob_radius_m * centre_cam.normalized();
+            centre_cam -
+            2.0 / 3.0 * simulate::PendulumParameters().bob_radius_m * centre_cam.normalized();
         EXPECT_LT((sample.p_cam - front_cam).norm(), 0.007) << frame.index;
         EXPECT_FALSE(sample.has_orientation) << "a ball shows none";
         ++swinging;
