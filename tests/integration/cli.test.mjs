@@ -166,7 +166,7 @@ describe('a simulated pendulum', () => {
       const [t, x, y, z] = line.split(' ');
       return [t.replace('.', ''), [x, y, z].map(Number)];
     }));
-    const swinging = poses.slice(summary.first_swinging_frame).filter(({ status }) => status === 'tracked');
+    const swinging = poses.slice(summary.first_free_frame).filter(({ status }) => status === 'tracked');
     assert.ok(swinging.length > 300, `${swinging.length} frames tracked`);
     const off = swinging.map(({ t_ns, x, y, z }) => {
       const at = truth.get(t_ns);
@@ -281,7 +281,7 @@ describe('a simulated pendulum', () => {
   test('with less than one period', () => {
     const folder = damaged('short', (f) => {
       const all = lines(f, 'depth.txt');
-      const start = summary.first_swinging_frame + 1;
+      const start = summary.first_free_frame + 1;
       put(f, 'depth.txt', [all[0], ...all.slice(1, 31), ...all.slice(start, start + 25)]);
     });
     refused(analyse(folder), 1, /period/);

@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include "pipeline/run/chain.hpp"
+#include "pipeline/simulate/pendulum.hpp"
 #include "pipeline/simulate/simulate_run.hpp"
 
 namespace kinectlab {
@@ -19,7 +20,8 @@ Outcome outcome_of(simulate::NoiseModel noise, double seconds) {
     run.rig.with_colour = false;
     run.seconds = seconds;
     const auto rig = simulate::SimulatedRig::create(run.rig);
-    const ObjectSpec bob{"bob", SphereSettings{.radius_m = run.rig.pendulum.bob_radius_m}};
+    const ObjectSpec bob{
+        "bob", SphereSettings{.radius_m = simulate::PendulumParameters().bob_radius_m}};
     Chain chain = std::move(Chain::create({rig->camera(), {bob}}).value());
     const Eigen::Isometry3d T_cam_lab = rig->T_lab_cam().inverse();
 
@@ -29,9 +31,9 @@ Outcome outcome_of(simulate::NoiseModel noise, double seconds) {
         if (to_seconds(frame.t - run.rig.start) < 1.5) return chain.learn(frame);
         const auto sample = chain.track(frame).value().front();
         const bool tracked = sample.status == TrackStatus::tracked;
-        const Eigen::Vector3d error = sample.p_cam - T_cam_lab * truth.p_lab;
+        const Eigen::Vector3d error = sample.p_cam - T_cam_lab * truth.body().p_lab;
         if (tracked && error.norm() > 0.005) ++outcome.false_tracks;
-        if (truth.motion != simulate::Motion::swinging) return {};
+        if (truth.motion != simulate::Motion::free) return {};
         ++outcome.swinging;
         gap = tracked ? 0 : gap + 1;
         outcome.longest_gap = std::max(outcome.longest_gap, gap);

@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "pipeline/run/chain.hpp"
+#include "pipeline/simulate/pendulum.hpp"
 #include "pipeline/simulate/simulate_run.hpp"
 #include "tests/unit/pipeline/support/textured_scene.hpp"
 
@@ -273,13 +274,14 @@ TEST(Colour, FollowsASimulatedPendulum) {
     auto tracker = tracker_for(rig->camera(), red);
     int swinging = 0;
     const auto sink = [&](const RgbdFrame& frame, const simulate::Truth& truth) -> Result<void> {
-        if (truth.motion != simulate::Motion::swinging || frame.index % 3 != 0) return {};
+        if (truth.motion != simulate::Motion::free || frame.index % 3 != 0) return {};
         const TrackSample sample = sample_of(*tracker, frame);
         EXPECT_EQ(sample.status, TrackStatus::tracked);
         // A ball shows its front: two thirds of the radius before its centre.
-        const Eigen::Vector3d centre_cam = T_cam_lab * truth.p_lab;
+        const Eigen::Vector3d centre_cam = T_cam_lab * truth.body().p_lab;
         const Eigen::Vector3d front_cam =
-            centre_cam - 2.0 / 3.0 * run.rig.pendulum.bob_radius_m * centre_cam.normalized();
+            centre_cam -
+            2.0 / 3.0 * simulate::PendulumParameters().bob_radius_m * centre_cam.normalized();
         EXPECT_LT((sample.p_cam - front_cam).norm(), 0.007) << frame.index;
         EXPECT_FALSE(sample.has_orientation) << "a ball shows none";
         ++swinging;
