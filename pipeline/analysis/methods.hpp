@@ -8,5 +8,6 @@ namespace kinectlab {
 
 [[nodiscard]] AnalysisMethod pendulum_method();
 [[nodiscard]] AnalysisMethod collision_method();
+[[nodiscard]] AnalysisMethod rigid_body_method();
 
 }  // namespace kinectlab

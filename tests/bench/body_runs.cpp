@@ -101,4 +101,103 @@ BodyRun collision_run(std::uint64_t seed, BodyNoise noise) {
     return run;
 }
 
+BodyRun tumbler_run(std::uint64_t seed, BodyNoise noise) {
+    std::mt19937_64 random(seed);
+    std::normal_distribution<double> normal;
+    const Vector3d size(0.16, 0.10, 0.12);
+    const Vector3d squares = size.cwiseAbs2();
+    const Vector3d moments = Vector3d::Constant(squares.sum()) - squares;
+    const double size_u = 1e-3, mount_u = 0.01;
+    const Vector3d mount = mount_u * Vector3d(normal(random), normal(random), normal(random));
+    const Vector3d off = size_u * Vector3d(normal(random), normal(random), normal(random));
+    const Quaterniond start(
+        Vector3d(normal(random), normal(random), normal(random)).norm() + 0.5, 0.3, -0.4, 0.2
+    );
+    const Quaterniond mounted = turned(mount, Quaterniond::Identity());  // principal in object
+    Quaterniond q = start.normalized() * mounted;
+    Vector3d w(0.4 + 0.1 * normal(random), 0.3, 3.0 + 0.1 * normal(random));  // principal axes
+    const Vector3d p0(0.1, 1.6, 0.9), v0(0.05, -0.02, 0.03);
+    BodyRun run{"rigid_body", {{"box", {}}}, {}, {}};
+    const Vector3d rate = q * w;
+    constexpr int kSteps = 200;
+    constexpr int kFrames = 180;
+    const double h = 1.0 / kRate / kSteps;
+    // The middle of two small steps: second order, and the steps are 0.2 ms.
+    const auto slope = [&](const Vector3d& at) -> Vector3d {
+        return Vector3d(moments.cwiseProduct(at)).cross(at).cwiseQuotient(moments);
+    };
+    for (int i = 0; i < kFrames; ++i) {
+        MotionSample sample = frame(i);
+        sample.has_orientation = true;
+        sample.p_lab = p0 + v0 * (i / kRate);
+        sample.q_lab_obj = q * mounted.conjugate();
+        run.objects.front().samples.push_back(sample);
+        for (int k = 0; k < kSteps; ++k) {
+            const Vector3d middle = w + h / 2 * slope(w);
+            q = (q * turned(h * middle, Quaterniond::Identity())).normalized();
+            w += h * slope(middle);
+        }
+    }
+    add_noise(run.objects.front(), random, noise);
+    run.settings = {
+        {"size_a_m", size.x() + off.x()},
+        {"size_b_m", size.y() + off.y()},
+        {"size_c_m", size.z() + off.z()},
+        {"size_u_m", size_u},
+        {"mount_u_rad", mount_u}};
+    const Vector3d mean = p0 + v0 * (0.5 * (kFrames - 1) / kRate);
+    run.truth = {
+        {"rate_x", rate.x()},
+        {"rate_y", rate.y()},
+        {"rate_z", rate.z()},
+        {"rate", rate.norm()},
+        {"position_x", mean.x()},
+        {"position_y", mean.y()},
+        {"position_z", mean.z()},
+        {"velocity_x", v0.x()},
+        {"velocity_y", v0.y()},
+        {"velocity_z", v0.z()}};
+    return run;
+}
+
+BodyRun robot_run(std::uint64_t seed, BodyNoise noise) {
+    std::mt19937_64 random(seed);
+    std::uniform_real_distribution<double> uniform(0.0, 1.0);
+    const double phase = uniform(random), pulse = uniform(random);
+    constexpr int kFrames = 600;
+    constexpr int kSteps = 100;
+    const double h = 1.0 / kRate / kSteps;
+    Vector3d p(0.2, 1.8, 0.05);
+    double heading = 2.0 * std::numbers::pi * phase;
+    const double first_heading = heading;
+    double length = 0.0, greatest = 0.0;
+    BodyRun run{"path", {{"robot", {}}}, {}, {}};
+    for (int i = 0; i < kFrames; ++i) {
+        MotionSample sample = frame(i);
+        sample.p_lab = p;
+        run.objects.front().samples.push_back(sample);
+        for (int k = 0; k < kSteps && i + 1 < kFrames; ++k) {
+            const double t = (i + (k + 0.5) / kSteps) / kRate;
+            const double speed = 0.3 + 0.1 * std::sin(0.7 * t + 6.0 * pulse);
+            const double turning = 0.25 + 0.5 * std::sin(0.5 * t + 6.0 * phase);
+            const double middle = heading + h / 2 * turning;
+            p += h * speed * Vector3d(std::cos(middle), std::sin(middle), 0.0);
+            heading += h * turning;
+            length += h * speed;
+            greatest = std::max(greatest, speed);
+        }
+    }
+    const double duration = (kFrames - 1) / kRate;
+    run.truth = {
+        {"path_length", length},
+        {"mean_speed", length / duration},
+        {"greatest_speed", greatest},
+        {"total_turn", heading - first_heading},
+        {"mean_turning_rate", (heading - first_heading) / duration},
+        {"displacement", (p - run.objects.front().samples.front().p_lab).norm()},
+        {"duration", duration}};
+    add_noise(run.objects.front(), random, noise);
+    return run;
+}
+
 }  // namespace kinectlab::bench
