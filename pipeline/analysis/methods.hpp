@@ -9,5 +9,6 @@ namespace kinectlab {
 [[nodiscard]] AnalysisMethod pendulum_method();
 [[nodiscard]] AnalysisMethod collision_method();
 [[nodiscard]] AnalysisMethod rigid_body_method();
+[[nodiscard]] AnalysisMethod path_method();
 
 }  // namespace kinectlab
