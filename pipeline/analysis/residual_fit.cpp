@@ -25,6 +25,7 @@ constexpr int kMostSteps = 60;
 constexpr double kMedianChi2[] = {0.455, 1.386, 2.366};  // of one to three degrees of freedom
 constexpr double kSmallestNoise = 1e-6;  // share of the given variance below which it is rounding
 constexpr double kDifference = 1e-4;     // of a parameter's scale
+constexpr double kFewestIndependent = 4.0;  // of one direction, to know the size of its noise by
 constexpr double kNothingKnown = 1e-6;   // 1/scale: keeps a parameter that nothing shows in place
 
 struct Equations {
@@ -288,7 +289,8 @@ private:
             for (std::size_t i = 1; i < one.t.size(); ++i)
                 steps.push_back(one.t[i] - one.t[i - 1]);
         }
-        NoiseMemories noise(median(std::move(steps)), settings.longest_memory_s, directions_);
+        const double step = median(std::move(steps));
+        NoiseMemories noise(step, settings.longest_memory_s, directions_);
         noise.add(series, prior);
         const auto memories = noise.weighed();
         fit.memory_s = mean_memory_s(memories);
@@ -297,7 +299,13 @@ private:
             if (memory.weight > 1e-4)
                 for (const FitSeries& one : series)
                     if (!one.t.empty()) scores += memory.weight * score_covariance(one, memory);
-        const MatrixXd small = c * scores * c;
+        fit.outliers = static_cast<int>(places_.size()) - used;
+        fit.degrees_of_freedom = directions_ * used - static_cast<int>(free_.size());
+        const double alike = 1.0 + 2.0 * fit.memory_s / step;  // samples for each independent one
+        const double known_by = std::max(
+            fit.degrees_of_freedom / (alike * directions_ * series_), kFewestIndependent
+        );
+        const MatrixXd small = known_by / (known_by - 2.0) * c * scores * c;
 
         fit.from_noise = MatrixXd::Zero(n_, n_);
         fit.by_prior = MatrixXd::Zero(n_, n_);
@@ -309,8 +317,6 @@ private:
                 if (prior[column] * std::pow(scale_[free_[b]], 2) > 2.0 * kNothingKnown * kNothingKnown)
                     fit.by_prior(free_[a], free_[b]) = c(row, column) * std::sqrt(prior[column]);
             }
-        fit.outliers = static_cast<int>(places_.size()) - used;
-        fit.degrees_of_freedom = directions_ * used - static_cast<int>(free_.size());
         double chi2 = 0.0;
         for (std::size_t i = 0; i < places_.size(); ++i)
             if (use_[i]) chi2 += fit.residuals[i].squaredNorm();

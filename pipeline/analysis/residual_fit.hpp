@@ -47,7 +47,8 @@ struct ResidualFit {
 /// Fits parameters to residuals of any kind: Levenberg-Marquardt with Huber's cost, then plain
 /// least squares without what lies beyond `outlier_sigma`. The residuals say how large the noise of
 /// each thing is in each direction and, through NoiseMemories, for how long it lasts; the
-/// covariance is that of the least-squares estimate under such noise, weighted over the memories.
+/// covariance is that of the least-squares estimate under such noise, weighted over the memories,
+/// and wider where few independent samples know the noise's size (GUM Supplement 1, 6.4.9).
 /// Errors (bad_data): no more samples than parameters, a start that gives no number.
 [[nodiscard]] Result<ResidualFit> fit_residuals(
     std::span<const ResidualPlace> places,

@@ -194,8 +194,7 @@ BodyRun robot_run(std::uint64_t seed, BodyNoise noise) {
         {"greatest_speed", greatest},
         {"total_turn", heading - first_heading},
         {"mean_turning_rate", (heading - first_heading) / duration},
-        {"displacement", (p - run.objects.front().samples.front().p_lab).norm()},
-        {"duration", duration}};
+        {"displacement", (p - run.objects.front().samples.front().p_lab).norm()}};
     add_noise(run.objects.front(), random, noise);
     return run;
 }
