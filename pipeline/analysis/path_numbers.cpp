@@ -5,7 +5,7 @@
 #include <limits>
 #include <numbers>
 
-#include "pipeline/analysis/median.hpp"
+#include "pipeline/analysis/greatest_speed.hpp"
 
 namespace kinectlab {
 namespace {
@@ -15,11 +15,10 @@ using Eigen::Vector3d;
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kStanding = 3.0;  // uncertainties of the speed
-constexpr double kCalm = 1.5;      // typical uncertainties: ends of the path are known worse
 // The local cubic's slope of sin(Ωt) is low by this times (Ω half_window)⁴ (Epanechnikov's moments).
 constexpr double kSlopeLoss = 1.3e-3;
 
-enum Column { kLength, kGreatest, kDisplacement, kTurn, kColumns };
+enum Column { kLength, kDisplacement, kTurn, kColumns };
 
 /// How the numbers change with each sample.
 class Gradients {
@@ -140,47 +139,6 @@ void add_length(const SmoothPath& path, PathNumbers& numbers, Gradients& gradien
     numbers.smoothing_share = turning_sq / time;  // made a share where the window is known
 }
 
-/// The greatest of the speeds after their scatter has been shrunk to what noise does not explain:
-/// the greatest of many noisy numbers is too large.
-void add_greatest(const SmoothPath& path, PathNumbers& numbers, Gradients& gradients) {
-    const double typical = median(numbers.speed_u);
-    double n = 0.0;
-    double mean = 0.0;
-    double noise = 0.0;
-    std::vector<std::size_t> calm;
-    for (std::size_t i = 0; i < numbers.speed.size(); ++i)
-        if (numbers.speed[i] > 0.0 && numbers.speed_u[i] <= kCalm * typical) calm.push_back(i);
-    if (calm.empty()) {
-        numbers.greatest_speed = {kNan, kNan};
-        return;
-    }
-    n = static_cast<double>(calm.size());
-    for (const std::size_t i : calm) {
-        mean += numbers.speed[i] / n;
-        noise += numbers.speed_u[i] * numbers.speed_u[i] / n;
-    }
-    double scatter = 0.0;
-    for (const std::size_t i : calm)
-        scatter += std::pow(numbers.speed[i] - mean, 2) / n;
-    const double real = scatter > 0.0 ? std::max(0.0, 1.0 - noise / scatter) : 0.0;
-    const std::size_t top = *std::max_element(calm.begin(), calm.end(), [&](auto a, auto b) {
-        return numbers.speed[a] < numbers.speed[b];
-    });
-    numbers.greatest_speed.value = mean + real * (numbers.speed[top] - mean);
-    const auto add = [&](std::size_t i, double share) {
-        const SmoothPoint& point = path.points[i];
-        gradients.add(
-            kGreatest,
-            point,
-            point.slope_weights,
-            flat(share * point.slope.head<2>().normalized())
-        );
-    };
-    add(top, real);
-    for (const std::size_t i : calm)
-        add(i, (1.0 - real) / n);
-}
-
 void add_turn(const SmoothPath& path, PathNumbers& numbers, Gradients& gradients) {
     const auto known = [](double h) {
         return std::isfinite(h);
@@ -223,7 +181,7 @@ Result<PathNumbers> path_numbers(const SmoothPath& path, double half_window_s) {
     add_length(path, numbers, gradients);
     const double omega_sq = numbers.smoothing_share * half_window_s * half_window_s;
     numbers.smoothing_share = kSlopeLoss * omega_sq * omega_sq;
-    add_greatest(path, numbers, gradients);
+    numbers.greatest_speed = greatest_speed(path, numbers, half_window_s);
     add_turn(path, numbers, gradients);
     const SmoothPoint& first = path.points.front();
     const SmoothPoint& last = path.points.back();
@@ -234,7 +192,6 @@ Result<PathNumbers> path_numbers(const SmoothPath& path, double half_window_s) {
     gradients.add(kDisplacement, first, first.value_weights, -direction);
     const Eigen::VectorXd u = gradients.u();
     numbers.length.u = u[kLength];
-    numbers.greatest_speed.u = u[kGreatest];
     numbers.displacement.u = u[kDisplacement];
     numbers.turn.u = u[kTurn];
     if (!path.has_heading && numbers.standing_share > 0.98)

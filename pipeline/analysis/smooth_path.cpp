@@ -165,7 +165,8 @@ void judge_noise(SmoothPath& path, double half_window_s) {
                     j.row(axis).segment<4>(4 * axis) << 1.0, x, x * x, x * x * x;
                 series.t.push_back(path.samples[k].t);
                 series.jacobian.push_back(j);
-                series.residual.emplace_back(path.samples[k].value - path.points[k].value);
+                // Not against the smooth path, which has taken up some of the noise.
+                series.residual.emplace_back(path.samples[k].value - path.samples[i].value);
             }
             if (!series.t.empty()) windows.push_back(std::move(series));
             i = last;
