@@ -85,10 +85,10 @@ Result<ResidualFit> fit_collision(
     }
     const ResidualModel model = [&](const Eigen::VectorXd& p, std::span<Vector3d> r) {
         for (std::size_t i = 0; i < r.size(); ++i)
-            r[i] = samples[i]->whiten *
-                   (samples[i]->p_lab -
-                    collision::position(p, static_cast<std::size_t>(places[i].series), places[i].t)
-                   );
+            r[i] =
+                samples[i]->whiten *
+                (samples[i]->p_lab -
+                 collision::position(p, static_cast<std::size_t>(places[i].series), places[i].t));
     };
     return fit_residuals(places, model, parameters);
 }

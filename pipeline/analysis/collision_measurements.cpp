@@ -61,11 +61,8 @@ public:
         const double value = at(fit_.parameters);
         std::vector<BudgetLine> lines;
         if (lengths != 0)
-            lines.push_back(
-                {"depth scale", std::abs(lengths * value) * conditions_.depth_scale_u}
-            );
-        if (times != 0)
-            lines.push_back({"clock", std::abs(times * value) * conditions_.clock_u});
+            lines.push_back({"depth scale", std::abs(lengths * value) * conditions_.depth_scale_u});
+        if (times != 0) lines.push_back({"clock", std::abs(times * value) * conditions_.clock_u});
         if (of_masses) {
             const double by_a = by_mass(formula, 1e-4 * masses_.a, 0.0) / (2e-4 * masses_.a);
             const double by_b = by_mass(formula, 0.0, 1e-4 * masses_.b) / (2e-4 * masses_.b);
@@ -144,36 +141,48 @@ void add_metric(const Budgets& budgets, AnalysisOutcome& outcome) {
                      ) {
         outcome.measurements.push_back(budgets.number(name, unit, formula, power, -power));
     };
-    add("momentum_before",
+    add(
+        "momentum_before",
         "kg m/s",
         [](const VectorXd& p, double a, double b) {
             return momentum(p, a, b, before, approach(p));
         },
-        1);
-    add("momentum_after",
+        1
+    );
+    add(
+        "momentum_after",
         "kg m/s",
         [](const VectorXd& p, double a, double b) { return momentum(p, a, b, after, approach(p)); },
-        1);
-    add("momentum_balance",
+        1
+    );
+    add(
+        "momentum_balance",
         "kg m/s",
         [](const VectorXd& p, double a, double b) {
             return momentum(p, a, b, after, approach(p)) - momentum(p, a, b, before, approach(p));
         },
-        1);
-    add("momentum_balance_across",
+        1
+    );
+    add(
+        "momentum_balance_across",
         "kg m/s",
         [](const VectorXd& p, double a, double b) {
             return momentum(p, a, b, after, across(p)) - momentum(p, a, b, before, across(p));
         },
-        1);
-    add("energy_before",
+        1
+    );
+    add(
+        "energy_before",
         "J",
         [](const VectorXd& p, double a, double b) { return energy(p, a, b, before); },
-        2);
-    add("energy_after",
+        2
+    );
+    add(
+        "energy_after",
         "J",
         [](const VectorXd& p, double a, double b) { return energy(p, a, b, after); },
-        2);
+        2
+    );
 }
 
 }  // namespace
@@ -211,9 +220,8 @@ void add_collision_measurements(
         "restitution",
         "1",
         [centres](const VectorXd& p, double, double) {
-            const Vector3d n = centres
-                                   ? Vector3d(collision::centre(p, 1) - collision::centre(p, 0))
-                                   : approach(p);
+            const Vector3d n =
+                centres ? Vector3d(collision::centre(p, 1) - collision::centre(p, 0)) : approach(p);
             return -(after(p, 0) - after(p, 1)).dot(n) / (before(p, 0) - before(p, 1)).dot(n);
         },
         0,

@@ -15,8 +15,8 @@ namespace {
 using Eigen::Vector3d;
 using Eigen::VectorXd;
 
-constexpr double kGravity = 9.81;      // m/s², turns a table's slope into an acceleration
-constexpr double kPlausibleDrag = 0.3; // 1/s, of balls on air, gliders and rolling balls
+constexpr double kGravity = 9.81;       // m/s², turns a table's slope into an acceleration
+constexpr double kPlausibleDrag = 0.3;  // 1/s, of balls on air, gliders and rolling balls
 constexpr std::size_t kFewFrames = 15;
 
 struct Ball {
@@ -54,7 +54,8 @@ ObjectFit plotted(const Ball& ball, std::size_t k, const Impact& impact, const R
             return Vector3d::Constant(std::numeric_limits<double>::quiet_NaN());
         return collision::position(fit.parameters, k, t);
     });
-    const std::size_t offset = k == 0 ? 0 : fit.used.size() - (impact.moving[1].end - impact.moving[1].begin);
+    const std::size_t offset =
+        k == 0 ? 0 : fit.used.size() - (impact.moving[1].end - impact.moving[1].begin);
     for (std::size_t i = 0; i < impact.moving[k].end - impact.moving[k].begin; ++i)
         ++(fit.used[offset + i] ? plot.used : plot.outliers);
     plot.reduced_chi2 = fit.reduced_chi2;
@@ -199,7 +200,8 @@ void add_warnings(
     const double touching = a->second + b->second;
     if (std::abs(seen - touching) > 4.0 * u + 0.02 * touching)
         outcome.warnings.push_back(fmt::format(
-            "At the impact the centres were {:.1f} mm apart; the radii say {:.1f} mm. Are radii and "
+            "At the impact the centres were {:.1f} mm apart; the radii say {:.1f} mm. Are radii "
+            "and "
             "calibration right?",
             seen * 1e3,
             touching * 1e3

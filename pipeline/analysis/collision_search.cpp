@@ -14,14 +14,14 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kLook = 0.4;         // s to each side of a moment that may be the impact
-constexpr std::size_t kFewest = 3;    // samples of a ball on each side
-constexpr double kClearBend = 50.0;   // in squares of the noise
-constexpr double kOpposite = -0.5;    // cosine between the changes of the two velocities
-constexpr std::size_t kChunk = 6;     // samples by which a stretch grows
-constexpr double kStrongDrag = 0.3;   // 1/s, more is no uniform motion
-constexpr double kStray = 8.0;        // typical deviations from the median of five
-constexpr double kUniform = 4.0;      // standard deviations
+constexpr double kLook = 0.4;        // s to each side of a moment that may be the impact
+constexpr std::size_t kFewest = 3;   // samples of a ball on each side
+constexpr double kClearBend = 50.0;  // in squares of the noise
+constexpr double kOpposite = -0.5;   // cosine between the changes of the two velocities
+constexpr std::size_t kChunk = 6;    // samples by which a stretch grows
+constexpr double kStrongDrag = 0.3;  // 1/s, more is no uniform motion
+constexpr double kStray = 8.0;       // typical deviations from the median of five
+constexpr double kUniform = 4.0;     // standard deviations
 
 /// Two straight lines that meet, against one.
 struct Bend {
@@ -169,9 +169,7 @@ Result<Impact> find_impact(
     std::vector<double> times;
     for (std::size_t i = 1; i < balls[0].size(); ++i)
         for (const double part : {0.25, 0.75})
-            times.push_back(
-                (1.0 - part) * balls[0][i - 1].t + part * balls[0][i].t
-            );
+            times.push_back((1.0 - part) * balls[0][i - 1].t + part * balls[0][i].t);
     std::array<std::vector<Bend>, 2> bends;
     for (std::size_t k = 0; k < 2; ++k)
         for (const double t : times)

@@ -12,8 +12,9 @@ namespace kinectlab {
 using FitFormula = std::function<double(const Eigen::VectorXd& parameters)>;
 
 /// A number that is made of a fit's parameters, with its budget: `statistics` for the noise of what
-/// was measured, one line for each name in `prior_names` (by parameter; empty: none), then `others`,
-/// which are independent of the fit. Correlations among the parameters are in the first lines.
+/// was measured, one line for each name in `prior_names` (by parameter; empty: none), then
+/// `others`, which are independent of the fit. Correlations among the parameters are in the first
+/// lines.
 [[nodiscard]] Measurement measure(
     std::string name,
     std::string unit,

@@ -22,7 +22,8 @@ constexpr std::size_t kFirstSamples = 10;
 
 Quaterniond rotation(const Vector3d& by) {
     const double angle = by.norm();
-    return angle > 0.0 ? Quaterniond(Eigen::AngleAxisd(angle, by / angle)) : Quaterniond::Identity();
+    return angle > 0.0 ? Quaterniond(Eigen::AngleAxisd(angle, by / angle))
+                       : Quaterniond::Identity();
 }
 
 /// Attitude of the principal axes, and angular velocity in them.
@@ -156,8 +157,13 @@ Result<FreeBody> fit_free_body(
         return fail(
             ErrorCode::bad_data,
             "samples",
-            fmt::format("the body turns {:.0f}° from frame to frame", fastest * 180.0 / std::numbers::pi),
-            fmt::format("up to {:.0f}° can be followed: let it turn more slowly", ambiguous / 3.0 * 180.0 / std::numbers::pi)
+            fmt::format(
+                "the body turns {:.0f}° from frame to frame", fastest * 180.0 / std::numbers::pi
+            ),
+            fmt::format(
+                "up to {:.0f}° can be followed: let it turn more slowly",
+                ambiguous / 3.0 * 180.0 / std::numbers::pi
+            )
         );
     FreeBody body;
     body.first = samples.front().q_lab_obj;
@@ -181,9 +187,8 @@ Result<FreeBody> fit_free_body(
             break;
         }
     }
-    const double turned =
-        body.fit.parameters.segment<3>(free_body::kRate).norm() *
-        (samples.back().t - samples.front().t);
+    const double turned = body.fit.parameters.segment<3>(free_body::kRate).norm() *
+                          (samples.back().t - samples.front().t);
     if (turned < 5.0 * noise)
         return fail(
             ErrorCode::bad_data,

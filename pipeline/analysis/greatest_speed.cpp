@@ -85,8 +85,7 @@ PathNumber greatest_speed(
         if (numbers.speed[i] > 0.0 && numbers.speed_u[i] <= kCalm * typical) calm.push_back(i);
     const double nan = std::numeric_limits<double>::quiet_NaN();
     if (calm.empty()) return {nan, nan};
-    const auto course =
-        calmer_course(path, numbers.speed, calm, kCalmer * half_window_s);
+    const auto course = calmer_course(path, numbers.speed, calm, kCalmer * half_window_s);
     const double top = *std::max_element(course.begin(), course.end());
     std::mt19937_64 random(1);
     std::vector<double> tops;

@@ -34,8 +34,7 @@ Result<void> add_mean_motion(
     std::vector<PathParameter> parameters(9);
     const Vector3d start = (*samples)[samples->size() / 2].p_lab;
     for (std::size_t i = 0; i < 9; ++i)
-        parameters[i] = {
-            i < 3 ? start[static_cast<Eigen::Index>(i)] : 0.0, 0.01, 0.0, -1.0};
+        parameters[i] = {i < 3 ? start[static_cast<Eigen::Index>(i)] : 0.0, 0.01, 0.0, -1.0};
     const ResidualModel model = [&](const VectorXd& p, std::span<Vector3d> r) {
         for (std::size_t i = 0; i < r.size(); ++i)
             r[i] = (*samples)[i].whiten * ((*samples)[i].p_lab - parabola(p, places[i].t));
@@ -43,9 +42,8 @@ Result<void> add_mean_motion(
     const auto fit = fit_residuals(places, model, parameters);
     if (!fit) return tl::unexpected(fit.error());
 
-    ObjectFit plot = plotted_fit(object, [&](double t) {
-        return parabola(fit->parameters, t - middle);
-    });
+    ObjectFit plot =
+        plotted_fit(object, [&](double t) { return parabola(fit->parameters, t - middle); });
     plot.outliers = fit->outliers;
     plot.used = static_cast<int>(samples->size()) - fit->outliers;
     plot.reduced_chi2 = fit->reduced_chi2;

@@ -137,9 +137,10 @@ Result<AnalysisOutcome> run(
         static_cast<double>(path->samples.back().index - path->samples.front().index + 1);
     outcome.facts = {
         {"duration_s", duration},
-        {"gap_share", 1.0 - static_cast<double>(path->samples.size() +
-                                                static_cast<std::size_t>(path->outliers)) /
-                                frames},
+        {"gap_share",
+         1.0 -
+             static_cast<double>(path->samples.size() + static_cast<std::size_t>(path->outliers)) /
+                 frames},
         {"outlier_share", path->outliers / frames},
         {"standing_share", numbers->standing_share}};
     outcome.facts["gap_share"] = std::max(outcome.facts["gap_share"], 0.0);

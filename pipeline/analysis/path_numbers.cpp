@@ -15,7 +15,8 @@ using Eigen::Vector3d;
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kStanding = 3.0;  // uncertainties of the speed
-// The local cubic's slope of sin(Ωt) is low by this times (Ω half_window)⁴ (Epanechnikov's moments).
+// The local cubic's slope of sin(Ωt) is low by this times (Ω half_window)⁴ (Epanechnikov's
+// moments).
 constexpr double kSlopeLoss = 1.3e-3;
 
 enum Column { kLength, kDisplacement, kTurn, kColumns };
@@ -88,9 +89,7 @@ void add_point(const SmoothPath& path, std::size_t i, PathNumbers& numbers) {
     std::vector<Jacobian3> gradient;
     for (const double w : point.bend_weights)
         gradient.emplace_back(flat(w / size * across));
-    numbers.turning_u.push_back(
-        std::sqrt(path.covariance(point.first, std::move(gradient))(0, 0))
-    );
+    numbers.turning_u.push_back(std::sqrt(path.covariance(point.first, std::move(gradient))(0, 0)));
 }
 
 void add_length(const SmoothPath& path, PathNumbers& numbers, Gradients& gradients) {
@@ -111,16 +110,13 @@ void add_length(const SmoothPath& path, PathNumbers& numbers, Gradients& gradien
             }
             const SmoothPoint& point = path.points[i];
             if (std::isfinite(numbers.turning[i]))
-                turning_sq += dt * std::max(
-                                       std::pow(numbers.turning[i], 2) -
-                                           std::pow(numbers.turning_u[i], 2),
-                                       0.0
-                                   );
+                turning_sq +=
+                    dt *
+                    std::max(
+                        std::pow(numbers.turning[i], 2) - std::pow(numbers.turning_u[i], 2), 0.0
+                    );
             gradients.add(
-                kLength,
-                point,
-                point.slope_weights,
-                flat(dt * point.slope.head<2>().normalized())
+                kLength, point, point.slope_weights, flat(dt * point.slope.head<2>().normalized())
             );
         }
         if (begin > 0) {
@@ -152,8 +148,7 @@ void add_turn(const SmoothPath& path, PathNumbers& numbers, Gradients& gradients
     }
     numbers.turn.value = *last - *first;
     const std::size_t ends[] = {
-        static_cast<std::size_t>(first - h.begin()),
-        static_cast<std::size_t>(h.rend() - last) - 1};
+        static_cast<std::size_t>(first - h.begin()), static_cast<std::size_t>(h.rend() - last) - 1};
     for (int k = 0; k < 2; ++k) {
         const SmoothPoint& point = path.points[ends[k]];
         const double sign = k == 0 ? -1.0 : 1.0;

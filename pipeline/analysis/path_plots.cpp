@@ -72,11 +72,15 @@ std::vector<Plot> path_plots(
     };
     std::vector<Plot> plots{map(path, fit, numbers, metric)};
     if (metric)
-        plots.push_back(against_time(
-            "speed", "Speed against time", "v / (m/s)", numbers.speed, numbers.speed_u
-        ));
+        plots.push_back(
+            against_time("speed", "Speed against time", "v / (m/s)", numbers.speed, numbers.speed_u)
+        );
     plots.push_back(against_time(
-        "turning", "Turning rate against time", "turning / (rad/s)", numbers.turning, numbers.turning_u
+        "turning",
+        "Turning rate against time",
+        "turning / (rad/s)",
+        numbers.turning,
+        numbers.turning_u
     ));
     plots.push_back(
         against_time("heading", "Heading against time", "heading / rad", numbers.heading, {})

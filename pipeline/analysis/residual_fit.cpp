@@ -26,7 +26,7 @@ constexpr double kMedianChi2[] = {0.455, 1.386, 2.366};  // of one to three degr
 constexpr double kSmallestNoise = 1e-6;  // share of the given variance below which it is rounding
 constexpr double kDifference = 1e-4;     // of a parameter's scale
 constexpr double kFewestIndependent = 4.0;  // of one direction, to know the size of its noise by
-constexpr double kNothingKnown = 1e-6;   // 1/scale: keeps a parameter that nothing shows in place
+constexpr double kNothingKnown = 1e-6;  // 1/scale: keeps a parameter that nothing shows in place
 
 struct Equations {
     MatrixXd information;
@@ -239,8 +239,7 @@ private:
             std::vector<double> d;
             for (std::size_t i = 0; i < r.size(); ++i)
                 if (places_[i].series == one) d.push_back((whiten * r[i]).norm());
-            const double typical =
-                median(std::move(d)) / std::sqrt(kMedianChi2[directions - 1]);
+            const double typical = median(std::move(d)) / std::sqrt(kMedianChi2[directions - 1]);
             rescale_[static_cast<std::size_t>(one)] = whiten / std::max(typical, 1.0);
             directions_ = std::max(directions_, directions);
         }
@@ -302,9 +301,8 @@ private:
         fit.outliers = static_cast<int>(places_.size()) - used;
         fit.degrees_of_freedom = directions_ * used - static_cast<int>(free_.size());
         const double alike = 1.0 + 2.0 * fit.memory_s / step;  // samples for each independent one
-        const double known_by = std::max(
-            fit.degrees_of_freedom / (alike * directions_ * series_), kFewestIndependent
-        );
+        const double known_by =
+            std::max(fit.degrees_of_freedom / (alike * directions_ * series_), kFewestIndependent);
         const MatrixXd small = known_by / (known_by - 2.0) * c * scores * c;
 
         fit.from_noise = MatrixXd::Zero(n_, n_);
@@ -314,7 +312,8 @@ private:
                 const auto row = static_cast<Index>(a);
                 const auto column = static_cast<Index>(b);
                 fit.from_noise(free_[a], free_[b]) = small(row, column);
-                if (prior[column] * std::pow(scale_[free_[b]], 2) > 2.0 * kNothingKnown * kNothingKnown)
+                if (prior[column] * std::pow(scale_[free_[b]], 2) >
+                    2.0 * kNothingKnown * kNothingKnown)
                     fit.by_prior(free_[a], free_[b]) = c(row, column) * std::sqrt(prior[column]);
             }
         double chi2 = 0.0;

@@ -23,7 +23,7 @@ using ResidualModel =
     std::function<void(const Eigen::VectorXd& parameters, std::span<Eigen::Vector3d> whitened)>;
 
 struct ResidualFitSettings {
-    double outlier_sigma = 4.5;  ///< in three dimensions
+    double outlier_sigma = 4.5;     ///< in three dimensions
     double longest_memory_s = 1.0;  ///< over which the noise of neighbours may be alike
 };
 

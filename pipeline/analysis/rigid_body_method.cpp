@@ -61,7 +61,9 @@ void add_rates(
     const Vector3d rate = body.fit.parameters.segment<3>(free_body::kRate);
     const double tilt = conditions.tilt_u_rad;
     const double tilted[] = {
-        std::abs(rate.z()) * tilt, std::abs(rate.z()) * tilt, std::hypot(rate.x(), rate.y()) * tilt};
+        std::abs(rate.z()) * tilt,
+        std::abs(rate.z()) * tilt,
+        std::hypot(rate.x(), rate.y()) * tilt};
     for (int i = 0; i < 3; ++i)
         outcome.measurements.push_back(measure(
             std::string("rate_") + kAxes[i],
@@ -139,9 +141,7 @@ void add_plots(
             const MotionSample& seen = object.samples[samples[k].index];
             measured.y.push_back(seen.w_lab[i]);
             fitted.y.push_back(rate[k][i]);
-            off.y.push_back(
-                1e3 * Vector3d(samples[k].whiten.inverse() * body.fit.residuals[k])[i]
-            );
+            off.y.push_back(1e3 * Vector3d(samples[k].whiten.inverse() * body.fit.residuals[k])[i]);
         }
         rates.series.push_back(std::move(measured));
         rates.series.push_back(std::move(fitted));
@@ -204,7 +204,8 @@ Result<AnalysisOutcome> run(
     );
     if (body->fit.memory_s > 0.0)
         outcome.notes.push_back(fmt::format(
-            "The orientations' noise stays alike for about {:.0f} ms, which is in the uncertainties.",
+            "The orientations' noise stays alike for about {:.0f} ms, which is in the "
+            "uncertainties.",
             1e3 * body->fit.memory_s
         ));
     return outcome;
@@ -217,13 +218,21 @@ AnalysisMethod rigid_body_method() {
     method.name = "rigid_body";
     method.needs_orientation = true;
     method.settings = {
-        {"size_a_m", 0.001, 100.0, {}, "Edge along the object's x; with b and c the moments' ratios "
-                                       "follow, else they are fitted."},
+        {"size_a_m",
+         0.001,
+         100.0,
+         {},
+         "Edge along the object's x; with b and c the moments' ratios "
+         "follow, else they are fitted."},
         {"size_b_m", 0.001, 100.0, {}, "Edge along the object's y."},
         {"size_c_m", 0.001, 100.0, {}, "Edge along the object's z."},
         {"size_u_m", 0.0, 1.0, 0.001, "Standard uncertainty of each edge."},
         {"mount_u_rad", 0.0, 0.5, 0.01, "How well the object's axes are its principal axes."},
-        {"symmetry", 0.0, 1.0, 0.0, "1: a box without marks, half turns about its axes look alike."}};
+        {"symmetry",
+         0.0,
+         1.0,
+         0.0,
+         "1: a box without marks, half turns about its axes look alike."}};
     method.results = {
         "rate_x",
         "rate_y",

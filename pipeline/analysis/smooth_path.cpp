@@ -138,9 +138,8 @@ std::vector<double> distances(const SmoothPath& path) {
     for (std::size_t i = 0; i < path.samples.size(); ++i) {
         const Vector3d off = path.samples[i].value - path.points[i].value;
         const Matrix3d& spread = path.samples[i].spread;
-        double squares = Eigen::Vector2d(
-                             spread.topLeftCorner<2, 2>().inverse() * off.head<2>()
-        ).squaredNorm();
+        double squares =
+            Eigen::Vector2d(spread.topLeftCorner<2, 2>().inverse() * off.head<2>()).squaredNorm();
         if (path.has_heading) squares += std::pow(off[2] / spread(2, 2), 2);
         d.push_back(std::sqrt(squares));
     }
@@ -188,8 +187,8 @@ void judge_noise(SmoothPath& path, double half_window_s) {
     }
     Vector3d told = Vector3d::Zero();
     for (const auto& s : path.samples)
-        told += (s.spread * s.spread.transpose()).diagonal() /
-                static_cast<double>(path.samples.size());
+        told +=
+            (s.spread * s.spread.transpose()).diagonal() / static_cast<double>(path.samples.size());
     Vector3d scale = Vector3d::Zero();
     for (int axis = 0; axis < 3; ++axis)
         if (told[axis] > 0.0)
@@ -254,10 +253,8 @@ Result<SmoothPath> smooth_path(const Trajectory& trajectory, double half_window_
         const auto d = distances(path);
         const double typical = median(d) / std::sqrt(path.has_heading ? 2.366 : 1.386);
         // The farthest first: what lies near a stray sample looks astray too.
-        const double limit = std::max(
-            kOutlier * typical,
-            0.5 * *std::max_element(d.begin(), d.end())
-        );
+        const double limit =
+            std::max(kOutlier * typical, 0.5 * *std::max_element(d.begin(), d.end()));
         std::vector<FloorSample> kept;
         for (std::size_t i = 0; i < d.size(); ++i)
             if (d[i] <= limit || limit <= 0.0) kept.push_back(path.samples[i]);

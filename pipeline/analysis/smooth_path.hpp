@@ -19,22 +19,23 @@ struct FloorSample {
     Eigen::Matrix3d spread;  ///< spread · spreadᵀ = covariance of the noise
 };
 
-/// The smoothed path at one sample's time: cubic through the neighbours, and how it is made of them.
+/// The smoothed path at one sample's time: cubic through the neighbours, and how it is made of
+/// them.
 struct SmoothPoint {
     std::size_t first = 0;              ///< of the samples that it is made of
     std::vector<double> value_weights;  ///< value = Σ weight · sample, from `first` on
     std::vector<double> slope_weights;
     std::vector<double> bend_weights;
     Eigen::Vector3d value;
-    Eigen::Vector3d slope;       ///< m/s, m/s, rad/s
-    Eigen::Vector3d bend;        ///< second derivative
+    Eigen::Vector3d slope;  ///< m/s, m/s, rad/s
+    Eigen::Vector3d bend;   ///< second derivative
     Eigen::Matrix3d slope_covariance;
 };
 
 struct SmoothPath {
-    std::vector<FloorSample> samples;        ///< without outliers, noise as the residuals show it
-    std::vector<SmoothPoint> points;         ///< one for each sample
-    std::vector<std::size_t> stretch_ends;   ///< one past the last sample of each unbroken stretch
+    std::vector<FloorSample> samples;       ///< without outliers, noise as the residuals show it
+    std::vector<SmoothPoint> points;        ///< one for each sample
+    std::vector<std::size_t> stretch_ends;  ///< one past the last sample of each unbroken stretch
     std::vector<NoiseMemory> memories;
     bool has_heading = false;  ///< from the object's own x axis
     int outliers = 0;
@@ -42,9 +43,8 @@ struct SmoothPath {
 
     /// Covariance of numbers that change by `gradient` (3 rows: x, y, heading; a column for each
     /// number) with each sample from `first` on.
-    [[nodiscard]] Eigen::MatrixXd covariance(
-        std::size_t first, std::vector<Jacobian3> gradient
-    ) const;
+    [[nodiscard]] Eigen::MatrixXd covariance(std::size_t first, std::vector<Jacobian3> gradient)
+        const;
 };
 
 /// Local cubic regression (Cleveland 1979) with Epanechnikov's weights over `half_window_s` to both

@@ -68,8 +68,8 @@ Coverage over_seeds(MakeRun make, BodyNoise noise) {
 Figures coverage(const std::string& name, MakeRun make) {
     Figures figures;
     for (const BodyNoise noise : {BodyNoise::white, BodyNoise::slow}) {
-        const std::string start = "coverage bodies, " + name +
-                                  (noise == BodyNoise::white ? ", white" : ", slow") + ", ";
+        const std::string start =
+            "coverage bodies, " + name + (noise == BodyNoise::white ? ", white" : ", slow") + ", ";
         const Coverage all = over_seeds(make, noise);
         Share greatest;
         const auto add = [&](const std::string& what, double value, double bound, Better better) {
@@ -84,10 +84,7 @@ Figures coverage(const std::string& name, MakeRun make) {
         add("greatest share within u", greatest.within_u, 0.76, Better::lower);
         add("greatest share within 2u", greatest.within_2u, 0.99, Better::lower);
         if (all.greatest_rate_error > 0.0)
-            add("angular velocity, largest error",
-                all.greatest_rate_error,
-                0.01,
-                Better::lower);
+            add("angular velocity, largest error", all.greatest_rate_error, 0.01, Better::lower);
     }
     return figures;
 }

@@ -81,7 +81,9 @@ TEST(RigidBody, ABoxWithoutMarksIsFollowedThroughItsLikes) {
     Tumble tumble = tumbling();
     spoil(tumble.trajectory, 3);
     const Quaterniond halves[] = {
-        Quaterniond(1, 0, 0, 0), Quaterniond(0, 1, 0, 0), Quaterniond(0, 0, 1, 0),
+        Quaterniond(1, 0, 0, 0),
+        Quaterniond(0, 1, 0, 0),
+        Quaterniond(0, 0, 1, 0),
         Quaterniond(0, 0, 0, 1)};
     std::mt19937_64 random(5);
     for (auto& s : tumble.trajectory.samples)

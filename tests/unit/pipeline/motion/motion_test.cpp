@@ -140,8 +140,8 @@ TEST(Motion, UncertaintiesOfTheDerivativesAreTheirScatter) {
         auto samples = swing(21, 0.5);
         for (auto& s : samples) {
             s.p_cam.z() += 2e-4 * normal(random);
-            s.q_cam_obj = Eigen::AngleAxisd(1e-3 * normal(random), Eigen::Vector3d::UnitX()) *
-                          s.q_cam_obj;
+            s.q_cam_obj =
+                Eigen::AngleAxisd(1e-3 * normal(random), Eigen::Vector3d::UnitX()) * s.q_cam_obj;
         }
         told = motion_of(samples).samples[kMiddle];
         v += told.v_lab.z() * told.v_lab.z() / kSeeds;
