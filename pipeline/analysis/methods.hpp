@@ -7,5 +7,8 @@ namespace kinectlab {
 // Each in the .cpp of its name; listed by analysis_methods().
 
 [[nodiscard]] AnalysisMethod pendulum_method();
+[[nodiscard]] AnalysisMethod projectile_method();
+[[nodiscard]] AnalysisMethod incline_method();
+[[nodiscard]] AnalysisMethod spring_method();
 
 }  // namespace kinectlab
