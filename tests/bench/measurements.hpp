@@ -20,6 +20,7 @@ Figures measure_depth_cut();
 Figures measure_gravity_from_positions();
 Figures measure_gravity_khoshelham();
 Figures measure_gravity_kinect();
+Figures measure_coverage();
 Figures measure_coverage_bodies();
 Figures measure_box_tracking();
 Figures measure_recognition();
@@ -52,6 +53,7 @@ inline constexpr std::array kMeasurements{
     Measurement{"g, white positions, analysis of 900 positions", measure_gravity_from_positions},
     Measurement{"g, khoshelham noise", measure_gravity_khoshelham},
     Measurement{"g, kinect noise", measure_gravity_kinect},
+    Measurement{"coverage, thrown rolling sliding ball, free driven spring", measure_coverage},
     Measurement{"coverage bodies: collision, rigid body, path", measure_coverage_bodies},
     Measurement{"box of 16x10x12 cm at 1.2 m", measure_box_tracking},
     Measurement{"recognition of a complex object", measure_recognition},
