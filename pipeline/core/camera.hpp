@@ -36,7 +36,9 @@ struct RgbdCamera {
     Eigen::Isometry3d T_colour_depth = Eigen::Isometry3d::Identity();  ///< p_colour = T p_depth
     double depth_unit_m = 0.001;  ///< metres for each count of a depth pixel
     double depth_scale_u = 1e-3;  ///< relative standard uncertainty of the depth scale
-    double clock_u = 2e-5;        ///< relative standard uncertainty of the device clock's rate
+    /// How well the lab frame's z is known to point up, about each horizontal axis.
+    double tilt_u_rad = 0.02;
+    double clock_u = 2e-5;  ///< relative standard uncertainty of the device clock's rate
     DisparityNoise noise;
 };
 

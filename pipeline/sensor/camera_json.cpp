@@ -165,6 +165,7 @@ Result<CameraFile> read_document(const json& document, DepthUnit unit) {
          "colour",
          "T_lab_cam",
          "depth_scale_u",
+         "tilt_u_rad",
          "clock_u",
          "noise",
          "frame_rate_hz"}
@@ -176,6 +177,7 @@ Result<CameraFile> read_document(const json& document, DepthUnit unit) {
     if (unit == DepthUnit::in_counts || members.has("depth_scale"))
         camera.depth_unit_m = 1.0 / members.number("depth_scale", 1.0, 1e6);
     camera.depth_scale_u = members.number_or("depth_scale_u", 0.0, 0.5, camera.depth_scale_u);
+    camera.tilt_u_rad = members.number_or("tilt_u_rad", 0.0, 0.5, camera.tilt_u_rad);
     camera.clock_u = members.number_or("clock_u", 0.0, 0.1, camera.clock_u);
     if (members.has("T_lab_cam")) file.T_lab_cam = read_pose(members);
     if (members.has("frame_rate_hz"))
@@ -249,6 +251,7 @@ void write_camera_json(const std::filesystem::path& path, const CameraFile& file
     json document = pinhole_to_json(camera.depth);
     document["depth_scale"] = 1.0 / camera.depth_unit_m;
     document["depth_scale_u"] = camera.depth_scale_u;
+    document["tilt_u_rad"] = camera.tilt_u_rad;
     document["clock_u"] = camera.clock_u;
     document["noise"] = {
         {"inverse_depth_step", camera.noise.inverse_depth_step},

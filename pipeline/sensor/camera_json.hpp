@@ -17,6 +17,7 @@ namespace kinectlab {
 ///                        R_color_depth (3x3), t_color_depth_m (3): p_color = R p_depth + t
 ///   T_lab_cam            4x4: p_lab = T p_cam, lab z up, x along the main motion
 ///   depth_scale_u        relative standard uncertainty of depth_scale
+///   tilt_u_rad           how well T_lab_cam is levelled, standard uncertainty
 ///   clock_u              relative standard uncertainty of the clock's rate
 ///   noise                inverse_depth_step (1/m), sigma_steps
 ///   frame_rate_hz        nominal

@@ -37,6 +37,7 @@ void take_geometry(const simulated_rig::CameraGeometry& g, SourceInfo& info) {
     camera.T_colour_depth = isometry(g.T_colour_depth);
     camera.noise = {g.inverse_depth_step, g.sigma_steps};
     camera.depth_scale_u = g.depth_scale_u;
+    camera.tilt_u_rad = g.tilt_u_rad;
     camera.clock_u = g.clock_u;
     info.T_lab_cam = isometry(g.T_lab_cam);
 }

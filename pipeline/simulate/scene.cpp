@@ -150,6 +150,7 @@ RgbdCamera kinect_camera() {
     camera.depth = {640, 480, 580.0, 580.0, 319.5, 239.5};
     camera.colour = {640, 480, 525.0, 525.0, 319.5, 239.5};
     camera.T_colour_depth.translation() = Eigen::Vector3d(-kBaseline, 0.0, 0.0);
+    camera.tilt_u_rad = 0.001;  // its place is set, not measured
     return camera;
 }
 

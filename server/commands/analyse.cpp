@@ -84,11 +84,26 @@ AnalysisConditions conditions_of(const std::optional<RgbdCamera>& camera, const 
     AnalysisConditions conditions;
     if (camera) {
         conditions.depth_scale_u = camera->depth_scale_u;
+        conditions.tilt_u_rad = camera->tilt_u_rad;
         conditions.clock_u = camera->clock_u;
     }
     const auto gravity = truth.find("gravity");
     conditions.on_earth = gravity == truth.end() || is_earthly(gravity->second);
     return conditions;
+}
+
+/// What happened before the release is no part of the measurement, as in a run on a rig.
+std::vector<Trajectory> since(
+    const std::vector<Trajectory>& trajectories, const std::optional<TimeNs>& release
+) {
+    if (!release) return trajectories;
+    std::vector<Trajectory> rest;
+    for (const auto& trajectory : trajectories) {
+        rest.push_back({trajectory.object, {}});
+        for (const auto& sample : trajectory.samples)
+            if (sample.t >= *release) rest.back().samples.push_back(sample);
+    }
+    return rest;
 }
 
 std::size_t tracked_in(const Trajectory& trajectory) {
@@ -244,10 +259,12 @@ int analyse(int argc, char** argv) {
             : from_recording(arguments.recording, *definition, *values);
     if (!material) return report(material.error());
     material->provenance.program_version = config::version();
+    const auto free =
+        since(material->trajectories, experiments::recorded_release(arguments.recording));
     const auto evaluation = experiments::evaluate(
         {*definition,
          *values,
-         material->trajectories,
+         free,
          conditions_of(
              material->provenance.camera,
              experiments::recorded_truth(*definition, arguments.recording)

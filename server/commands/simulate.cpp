@@ -136,7 +136,10 @@ Result<simulate::RunSummary> record(
             return writer.add(frame);
         });
     if (!summary) return summary;
-    const nlohmann::json settings = {{"experiment", experiment}, {"parameters", values}};
+    const nlohmann::json settings = {
+        {"experiment", experiment},
+        {"parameters", values},
+        {"released_ns", kStart + from_seconds(summary->release_s)}};
     writer.add_file("experiment.json", settings.dump(1) + "\n");
     writer.finish();
     return summary;

@@ -6,7 +6,7 @@ namespace kinectlab::experiments {
 namespace {
 
 Result<Values> read_values(const Definition& definition, const nlohmann::json& document) {
-    ObjectReader reader(document, "", {"experiment", "parameters"});
+    ObjectReader reader(document, "", {"experiment", "parameters", "released_ns"});
     const std::string id = reader.text("experiment");
     if (reader.ok() && id != definition.id)
         reader.refuse(
@@ -71,6 +71,16 @@ Values recorded_truth(const Definition& definition, const std::filesystem::path&
             values[parameter.name] = recorded[parameter.name].get<double>();
     }
     return values;
+}
+
+std::optional<TimeNs> recorded_release(const std::filesystem::path& recording) {
+    const auto file = recording / "experiment.json";
+    std::error_code code;
+    if (!std::filesystem::is_regular_file(file, code)) return std::nullopt;
+    const auto document = read_json_file(file);
+    if (!document || !document->is_object() || !document->contains("released_ns")) return {};
+    const auto& released = (*document)["released_ns"];
+    return released.is_number_integer() ? std::optional(released.get<TimeNs>()) : std::nullopt;
 }
 
 }  // namespace kinectlab::experiments

@@ -2,6 +2,7 @@
 
 #include <filesystem>
 
+#include "pipeline/core/time.hpp"
 #include "server/experiments/definition.hpp"
 
 namespace kinectlab::experiments {
@@ -19,5 +20,8 @@ namespace kinectlab::experiments {
 [[nodiscard]] Values recorded_truth(
     const Definition& definition, const std::filesystem::path& recording
 );
+
+/// When everything was let go, from the recording's experiment.json; none where nothing says so.
+[[nodiscard]] std::optional<TimeNs> recorded_release(const std::filesystem::path& recording);
 
 }  // namespace kinectlab::experiments

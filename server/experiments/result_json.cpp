@@ -64,6 +64,7 @@ json to_json(const RgbdCamera& c) {
         {"T_colour_depth", rows_of(c.T_colour_depth)},
         {"depth_unit_m", c.depth_unit_m},
         {"depth_scale_u", c.depth_scale_u},
+        {"tilt_u_rad", c.tilt_u_rad},
         {"clock_u", c.clock_u},
         {"noise",
          {{"inverse_depth_step", c.noise.inverse_depth_step},

@@ -108,6 +108,7 @@ Result<RunAnalysis> analyse_run(
     if (!definition) return tl::unexpected(definition.error());
     AnalysisConditions conditions = conditions_of(run);
     conditions.depth_scale_u = measured.source.camera.depth_scale_u;
+    conditions.tilt_u_rad = measured.source.camera.tilt_u_rad;
     conditions.clock_u = measured.source.camera.clock_u;
     auto evaluation = experiments::evaluate(
         {*definition, run.parameters, trajectories, conditions, {}},
@@ -140,6 +141,7 @@ Result<RunAnalysis> analyse_again(
     AnalysisConditions conditions = conditions_of(run);
     if (camera.is_object()) {
         conditions.depth_scale_u = camera.value("depth_scale_u", conditions.depth_scale_u);
+        conditions.tilt_u_rad = camera.value("tilt_u_rad", conditions.tilt_u_rad);
         conditions.clock_u = camera.value("clock_u", conditions.clock_u);
     }
     experiments::Provenance provenance;

@@ -194,6 +194,7 @@ CameraGeometry Device::geometry() const {
     geometry.inverse_depth_step = camera.noise.inverse_depth_step;
     geometry.sigma_steps = camera.noise.sigma_steps;
     geometry.depth_scale_u = camera.depth_scale_u;
+    geometry.tilt_u_rad = camera.tilt_u_rad;
     geometry.clock_u = camera.clock_u;
     return geometry;
 }

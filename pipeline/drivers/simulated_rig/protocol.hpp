@@ -61,6 +61,7 @@ struct CameraGeometry {
     double inverse_depth_step;  ///< 1/m for each disparity step
     double sigma_steps;
     double depth_scale_u;
+    double tilt_u_rad;
     double clock_u;
 };
 
