@@ -20,3 +20,12 @@ CREATE TABLE definitions (
 ) STRICT;
 
 CREATE INDEX definitions_by_owner ON definitions (owner, id);
+
+-- Covariance of the orientation as a rotation vector in the lab frame (rad²); NULL where there is
+-- no orientation.
+ALTER TABLE poses ADD COLUMN rxx REAL;
+ALTER TABLE poses ADD COLUMN ryy REAL;
+ALTER TABLE poses ADD COLUMN rzz REAL;
+ALTER TABLE poses ADD COLUMN rxy REAL;
+ALTER TABLE poses ADD COLUMN rxz REAL;
+ALTER TABLE poses ADD COLUMN ryz REAL;

@@ -7,9 +7,9 @@
 #include "server/auth/live_sessions.hpp"
 #include "server/auth/live_tickets.hpp"
 #include "server/auth/sign_in.hpp"
-#include "server/experiments/definition.hpp"
 #include "server/live/hub.hpp"
 #include "server/live/jpeg.hpp"
+#include "server/rig/experiment_library.hpp"
 #include "server/rig/rig_service.hpp"
 #include "server/store/store.hpp"
 
@@ -24,8 +24,9 @@ struct Context {
     auth::SignIn& sign_in;
     auth::LiveTickets& tickets;
     auth::LiveSessions& live_sessions;
-    std::vector<experiments::Definition> definitions;
-    std::filesystem::path description;  ///< openapi.json
+    rig::ExperimentLibrary& library;
+    std::filesystem::path description;        ///< openapi.json
+    std::filesystem::path definition_schema;  ///< experiment.schema.json
     std::function<TimeNs()> now;
 };
 

@@ -36,6 +36,16 @@ net::Upgraded open_live(const Call& call);
 // experiments.cpp
 net::Response get_experiments(const Call& call);
 net::Response get_experiment(const Call& call);
+net::Response get_definition_schema(const Call& call);
+net::Response get_analyses(const Call& call);
+
+// definitions.cpp
+net::Response post_experiment(const Call& call);
+net::Response put_experiment(const Call& call);
+net::Response publish_experiment(const Call& call);
+net::Response delete_experiment(const Call& call);
+net::Response check_experiment(const Call& call);
+net::Response try_experiment(const Call& call);
 
 // bookings.cpp
 net::Response get_bookings(const Call& call);
@@ -54,5 +64,12 @@ net::Response post_abort(const Call& call);
 net::Response get_poses(const Call& call);
 net::Response get_poses_csv(const Call& call);
 net::Response get_fit(const Call& call);
+net::Response get_plots(const Call& call);
+net::Response get_plot_picture(const Call& call);
+net::Response get_report(const Call& call);
+
+// results.cpp
+net::Response get_results(const Call& call);
+net::Response post_result(const Call& call);
 
 }  // namespace kinectlab::api

@@ -52,7 +52,19 @@ const std::array kRoutes{
     Entry{Method::get, "/api/v1/rigs/{rig}/live", Access::ticket, open_live},
 
     Entry{Method::get, "/api/v1/experiments", Access::student, get_experiments},
+    Entry{Method::post, "/api/v1/experiments", Access::student, post_experiment},
+    Entry{Method::get, "/api/v1/experiments/schema.json", Access::student, get_definition_schema},
+    Entry{Method::post, "/api/v1/experiments/check", Access::student, check_experiment},
+    Entry{Method::post, "/api/v1/experiments/try", Access::student, try_experiment},
     Entry{Method::get, "/api/v1/experiments/{experiment}", Access::student, get_experiment},
+    Entry{Method::put, "/api/v1/experiments/{experiment}", Access::student, put_experiment},
+    Entry{Method::del, "/api/v1/experiments/{experiment}", Access::student, delete_experiment},
+    Entry{
+        Method::post,
+        "/api/v1/experiments/{experiment}/publish",
+        Access::student,
+        publish_experiment},
+    Entry{Method::get, "/api/v1/analyses", Access::student, get_analyses},
 
     Entry{Method::get, "/api/v1/bookings", Access::student, get_bookings},
     Entry{Method::post, "/api/v1/bookings", Access::student, post_booking},
@@ -67,6 +79,11 @@ const std::array kRoutes{
     Entry{Method::get, "/api/v1/runs/{run}/poses", Access::student, get_poses},
     Entry{Method::get, "/api/v1/runs/{run}/poses.csv", Access::student, get_poses_csv},
     Entry{Method::get, "/api/v1/runs/{run}/fit", Access::student, get_fit},
+    Entry{Method::get, "/api/v1/runs/{run}/plots", Access::student, get_plots},
+    Entry{Method::get, "/api/v1/runs/{run}/plots/{picture}", Access::student, get_plot_picture},
+    Entry{Method::get, "/api/v1/runs/{run}/report", Access::student, get_report},
+    Entry{Method::get, "/api/v1/runs/{run}/results", Access::student, get_results},
+    Entry{Method::post, "/api/v1/runs/{run}/results", Access::student, post_result},
 };
 
 bool changes_something(const net::Request& request) {

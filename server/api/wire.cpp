@@ -59,6 +59,15 @@ json to_json(const lab::Slot& slot) {
         {"end", lab::to_rfc3339(slot.end)}};
 }
 
+json entry_json(const rig::LibraryEntry& entry, const lab::User& viewer) {
+    json document = experiments::to_json(entry.definition);
+    document["state"] = rig::to_text(entry.state);
+    document["version"] = entry.version ? json(*entry.version) : json(nullptr);
+    document["owner"] = entry.owner ? json(entry.owner_name) : json(nullptr);
+    document["mine"] = entry.owner == viewer.id;
+    return document;
+}
+
 json booking_json(const lab::Booking& booking, const lab::User& viewer) {
     json document = to_json(booking.slot);
     document["id"] = booking.id;

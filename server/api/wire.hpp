@@ -10,6 +10,7 @@
 #include "server/lab/rig.hpp"
 #include "server/lab/run.hpp"
 #include "server/net/message.hpp"
+#include "server/rig/experiment_library.hpp"
 
 /// How everything looks as JSON, in one place; README.md beside it says the same in words.
 namespace kinectlab::api {
@@ -20,6 +21,9 @@ namespace kinectlab::api {
 [[nodiscard]] nlohmann::json to_json(const lab::RigStatus& rig);
 [[nodiscard]] nlohmann::json to_json(const lab::Slot& slot);
 [[nodiscard]] nlohmann::json to_json(const lab::Run& run);
+
+/// The definition with "state", "version", "owner" and "mine".
+[[nodiscard]] nlohmann::json entry_json(const rig::LibraryEntry& entry, const lab::User& viewer);
 
 /// As `viewer` may see it: others' names only for assistants and up.
 [[nodiscard]] nlohmann::json booking_json(const lab::Booking& booking, const lab::User& viewer);

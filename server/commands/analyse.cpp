@@ -9,12 +9,14 @@
 #include "server/commands/output.hpp"
 #include "server/commands/pose_table.hpp"
 #include "server/commands/tracked_recording.hpp"
-#include "server/config/share.hpp"
 #include "server/config/version.hpp"
 #include "server/experiments/definition.hpp"
 #include "server/experiments/evaluate.hpp"
 #include "server/experiments/recorded_settings.hpp"
+#include "server/experiments/share_dir.hpp"
 #include "server/experiments/trajectory_table.hpp"
+#include "server/plots/draw.hpp"
+#include "server/plots/report.hpp"
 
 namespace kinectlab::commands {
 namespace {
@@ -69,7 +71,9 @@ std::optional<int> parse(int argc, char** argv, Arguments& arguments) {
         ->expected(1)
         ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
     app.add_option(
-           "--out", arguments.out, "folder for result.json, poses.csv, fit.csv and plots.json"
+           "--out",
+           arguments.out,
+           "folder for result.json, poses.csv, fit.csv, the plots and report.html"
     )
         ->check(check_path);
     return parse_arguments(app, argc, argv);
@@ -139,8 +143,44 @@ Result<Material> from_table(
     return material;
 }
 
+/// Every plot and the budget as NAME.svg and NAME.png, and all of it as one page to print.
+Result<void> write_pictures(
+    const std::filesystem::path& folder,
+    const experiments::Definition& definition,
+    const experiments::Evaluation& evaluation
+) {
+    const auto write = [&](const std::string& name, auto&& draw) {
+        return write_text_file(folder / (name + ".svg"), draw(plots::Format::svg)).and_then([&] {
+            return write_text_file(folder / (name + ".png"), draw(plots::Format::png));
+        });
+    };
+    auto written = write("budget", [&](plots::Format format) {
+        return plots::draw_budget(evaluation.outcome.measurements, format);
+    });
+    for (const auto& plot : evaluation.outcome.plots)
+        written = written.and_then([&] {
+            return write(plot.name, [&](plots::Format format) {
+                return plots::draw(plot, format);
+            });
+        });
+    return written.and_then([&] {
+        const auto source = evaluation.result["provenance"].value("source", "");
+        return write_text_file(
+            folder / "report.html",
+            plots::report_html(
+                {definition.title,
+                 "Measured from " + source,
+                 experiments::to_json(definition),
+                 evaluation.result,
+                 evaluation.plots}
+            )
+        );
+    });
+}
+
 Result<void> write_files(
     const std::filesystem::path& folder,
+    const experiments::Definition& definition,
     const experiments::Evaluation& evaluation,
     const std::vector<Trajectory>& trajectories
 ) {
@@ -160,6 +200,7 @@ Result<void> write_files(
         .and_then([&] {
             return write_text_file(folder / "plots.json", evaluation.plots.dump() + "\n");
         })
+        .and_then([&] { return write_pictures(folder, definition, evaluation); })
         .and_then([&] {
             return write_text_file(folder / "result.json", evaluation.result.dump(1) + "\n");
         });
@@ -170,8 +211,9 @@ Result<void> write_files(
 int analyse(int argc, char** argv) {
     Arguments arguments;
     if (const auto status = parse(argc, argv, arguments)) return *status;
-    const auto definition =
-        experiments::load_definition(config::share_dir() / "experiments", arguments.experiment);
+    const auto definition = experiments::load_definition(
+        experiments::share_dir() / "experiments", arguments.experiment
+    );
     if (!definition) return report_usage(definition.error());
     const auto given = parse_settings(arguments.settings);
     if (!given) return report_usage(given.error());
@@ -218,7 +260,7 @@ int analyse(int argc, char** argv) {
         return kFailed;
     }
     if (!arguments.out.empty()) {
-        auto written = write_files(arguments.out, *evaluation, material->trajectories);
+        auto written = write_files(arguments.out, *definition, *evaluation, material->trajectories);
         if (!written) return report(written.error());
     }
     print_json(evaluation->result);

@@ -8,7 +8,7 @@
 #include <sys/file.h>
 #include <unistd.h>
 
-#include "server/config/share.hpp"
+#include "server/experiments/share_dir.hpp"
 
 namespace kinectlab::commands {
 namespace {
@@ -49,7 +49,9 @@ Result<void> need_database(const std::filesystem::path& folder) {
 }
 
 std::unique_ptr<store::Store> open_store(const std::filesystem::path& folder) {
-    return std::make_unique<store::Store>(folder / kDatabase, config::share_dir() / "migrations");
+    return std::make_unique<store::Store>(
+        folder / kDatabase, experiments::share_dir() / "migrations"
+    );
 }
 
 Result<ServerLock> ServerLock::take(const std::filesystem::path& folder) {

@@ -15,7 +15,7 @@
 #include "server/commands/commands.hpp"
 #include "server/commands/data_folder.hpp"
 #include "server/config/config.hpp"
-#include "server/config/share.hpp"
+#include "server/experiments/share_dir.hpp"
 #include "server/net/server.hpp"
 #include "server/net/static_files.hpp"
 
@@ -96,7 +96,8 @@ Result<void> check_experiments(
                 ErrorCode::invalid_argument,
                 "rigs",
                 "rig " + rig.id + " names the experiment '" + name + "', which there is not",
-                "give one of the definitions in " + (config::share_dir() / "experiments").string()
+                "give one of the definitions in " +
+                    (experiments::share_dir() / "experiments").string()
             );
         }
     }
@@ -105,7 +106,7 @@ Result<void> check_experiments(
 
 /// Everything the server is made of, in the order in which it comes to life.
 Result<void> run_server(const config::Config& config, const StopSignals& signals) {
-    auto definitions = experiments::load_definitions(config::share_dir() / "experiments");
+    auto definitions = experiments::load_definitions(experiments::share_dir() / "experiments");
     if (!definitions) return tl::unexpected(definitions.error());
     if (auto ok = check_experiments(config, *definitions); !ok) return ok;
     if (auto ok = need_data_folder(config.data_dir); !ok) return ok;
@@ -114,7 +115,8 @@ Result<void> run_server(const config::Config& config, const StopSignals& signals
     const auto store = open_store(config.data_dir);
 
     bus::Bus bus;
-    rig::RigService rigs(rig_settings(config), *definitions, *store, bus);
+    rig::ExperimentLibrary library(std::move(*definitions), store->definitions);
+    rig::RigService rigs(rig_settings(config), library, *store, bus);
     live::JpegCache jpegs;
     live::Hub hub(
         bus,
@@ -138,12 +140,13 @@ Result<void> run_server(const config::Config& config, const StopSignals& signals
         sign_in,
         tickets,
         live_sessions,
-        std::move(*definitions),
-        config::share_dir() / "api" / "openapi.json",
+        library,
+        experiments::share_dir() / "api" / "openapi.json",
+        experiments::share_dir() / "experiments" / "schema" / "experiment.schema.json",
         now_ns};
     const net::ServerSettings settings{config.listen.host, config.listen.port};
     auto server = net::Server::start(
-        settings, api::routes(context), net::static_files(config::share_dir() / "web", "api")
+        settings, api::routes(context), net::static_files(experiments::share_dir() / "web", "api")
     );
     if (!server) return tl::unexpected(server.error());
     greet(url_of(config.listen, (*server)->port()), auth::add_first_admin(store->users, now_ns()));

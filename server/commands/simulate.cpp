@@ -11,9 +11,9 @@
 #include "server/commands/commands.hpp"
 #include "server/commands/output.hpp"
 #include "server/commands/progress.hpp"
-#include "server/config/share.hpp"
 #include "server/config/version.hpp"
 #include "server/experiments/definition.hpp"
+#include "server/experiments/share_dir.hpp"
 
 namespace kinectlab::commands {
 namespace {
@@ -138,8 +138,9 @@ int simulate(int argc, char** argv) {
     Arguments arguments;
     if (const auto status = parse(argc, argv, arguments)) return *status;
 
-    const auto definition =
-        experiments::load_definition(config::share_dir() / "experiments", arguments.experiment);
+    const auto definition = experiments::load_definition(
+        experiments::share_dir() / "experiments", arguments.experiment
+    );
     if (!definition) return report_usage(definition.error());
     const auto given = parse_settings(arguments.settings);
     if (!given) return report_usage(given.error());

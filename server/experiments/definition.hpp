@@ -128,6 +128,8 @@ enum class RigKind { simulated, real, elsewhere };
 /// that do not fit the names, objects and settings that the analysis does not take, text that could
 /// carry more than text.
 [[nodiscard]] Result<Definition> read_definition(const nlohmann::json& document);
+/// The same for what comes from outside: held against the schema too.
+[[nodiscard]] Result<Definition> read_with_schema(const nlohmann::json& document);
 [[nodiscard]] nlohmann::json to_json(const Definition& definition);
 
 /// All *.json of a folder by id. Errors name the file.

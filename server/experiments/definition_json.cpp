@@ -5,9 +5,9 @@
 #include "pipeline/core/nearest_name.hpp"
 #include "server/experiments/definition.hpp"
 #include "server/experiments/definition_parts_json.hpp"
-#include "server/experiments/model_files.hpp"
 #include "server/experiments/objects_json.hpp"
 #include "server/experiments/preprocess_json.hpp"
+#include "server/experiments/schema_check.hpp"
 #include "server/experiments/strict_json.hpp"
 #include "server/experiments/student_text.hpp"
 #include "server/experiments/units_of_names.hpp"
@@ -90,10 +90,7 @@ Result<ExperimentObject> read_experiment_object(
 }
 
 Result<Definition> load_file(const std::filesystem::path& file) {
-    const auto beside = [&](json document) {
-        return with_models_beside(file, std::move(document));
-    };
-    return read_json_file(file).map(beside).and_then(read_definition).map_error([&](Error error) {
+    return read_json_file(file).and_then(read_with_schema).map_error([&](Error error) {
         if (error.field != file.string()) error.field = file.string() + ": " + error.field;
         return error;
     });
@@ -192,6 +189,13 @@ json to_json(const Definition& definition) {
     if (definition.preprocess) document["preprocess"] = to_json(*definition.preprocess);
     write_parts(definition, document);
     return document;
+}
+
+Result<Definition> read_with_schema(const json& document) {
+    auto definition = read_definition(document);  // first: its messages know what is meant
+    if (!definition) return definition;
+    if (auto ok = check_schema(document); !ok) return tl::unexpected(ok.error());
+    return definition;
 }
 
 TrackingPlan plan_for(const Definition& definition, const Values& values) {

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "pipeline/sensor/mesh_file.hpp"
+#include "server/experiments/share_dir.hpp"
 
 namespace kinectlab::experiments {
 
@@ -36,7 +37,9 @@ MethodSettings read_surface_patch(ObjectReader& reader) {
         reader.refuse("seed", "is no whole number", "give 0 to 4294967295");
     if (!reader.ok()) return settings;
     settings.seed = static_cast<std::uint32_t>(seed);
-    auto file = read_mesh(settings.model);
+    const std::filesystem::path model = settings.model;
+    const bool own = model.is_relative() && !model.empty();
+    auto file = read_mesh(own ? (share_dir() / "experiments" / model).string() : settings.model);
     if (!file) {
         const Error& error = file.error();
         reader.refuse("model", error.field + " " + error.message, error.cure);

@@ -234,8 +234,13 @@ asio::awaitable<bool> HttpConnection::write(
     if (!response.content_type.empty()) {
         message.set(http::field::content_type, response.content_type);
     }
-    for (const auto& header : response.headers)
-        message.insert(header.name, header.value);
+    for (const auto& header : response.headers) {
+        // A page that stands alone says more strictly what it may load; cookies come several times.
+        if (header.name == "Content-Security-Policy")
+            message.set(header.name, header.value);
+        else
+            message.insert(header.name, header.value);
+    }
     message.keep_alive(keep_alive);
     if (response.status != 204 && response.status != 304) {
         message.content_length(response.body.size());

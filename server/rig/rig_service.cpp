@@ -97,7 +97,7 @@ Error under_parameters(Error error) {
 }  // namespace
 
 struct RigService::State {
-    std::vector<experiments::Definition> definitions;
+    const ExperimentLibrary& library;
     store::Store& store;
     std::vector<std::unique_ptr<Lane>> lanes;
 
@@ -108,11 +108,16 @@ struct RigService::State {
         return fail(ErrorCode::not_found, "rig", "there is no rig \"" + id + "\"");
     }
 
-    [[nodiscard]] const experiments::Definition* definition(const std::string& id) const {
-        const auto found = std::find_if(definitions.begin(), definitions.end(), [&](const auto& d) {
-            return d.id == id;
-        });
-        return found == definitions.end() ? nullptr : &*found;
+    /// A rig does the experiments that its settings name, and what was published for the same
+    /// apparatus.
+    [[nodiscard]] bool offers(const RigSettings& rig, const experiments::Definition& definition)
+        const {
+        for (const auto& id : rig.experiments) {
+            if (id == definition.id) return true;
+            const auto named = library.offered(id);
+            if (named && named->apparatus == definition.apparatus) return true;
+        }
+        return false;
     }
 
     [[nodiscard]] Result<lab::Run> command(
@@ -123,17 +128,17 @@ struct RigService::State {
 
 RigService::RigService(
     const std::vector<RigSettings>& rigs,
-    std::vector<experiments::Definition> definitions,
+    const ExperimentLibrary& library,
     store::Store& store,
     bus::Bus& bus
 )
-    : state_(new State{std::move(definitions), store, {}}) {
+    : state_(new State{library, store, {}}) {
     store.runs.interrupt_unfinished(utc_now(), "the server went away during the run");
     for (const RigSettings& settings : rigs) {
         TrackingPlan idle_plan;
         for (const auto& id : settings.experiments) {
-            const auto* definition = state_->definition(id);
-            if (definition == nullptr) continue;
+            const auto definition = library.offered(id);
+            if (!definition) continue;
             if (const auto values = experiments::validate(*definition, {})) {
                 idle_plan = experiments::plan_for(*definition, *values);
                 break;
@@ -180,11 +185,8 @@ Result<lab::Run> RigService::start_run(
     const auto lane = state_->lane(request.rig);
     if (!lane) return tl::unexpected(lane.error());
     const RigSettings& rig = (*lane)->settings();
-    const auto* definition = state_->definition(request.experiment);
-    const bool offered =
-        std::find(rig.experiments.begin(), rig.experiments.end(), request.experiment) !=
-        rig.experiments.end();
-    if (definition == nullptr || !offered) {
+    const auto definition = state_->library.offered(request.experiment);
+    if (!definition || !state_->offers(rig, *definition)) {
         return fail(
             ErrorCode::not_found,
             "experiment",
@@ -200,8 +202,7 @@ Result<lab::Run> RigService::start_run(
     if (!booking) {
         return fail(ErrorCode::conflict, "rig", "is not booked by you now", "book a slot first");
     }
-    const auto duration = values->find("duration_s");
-    const double duration_s = duration == values->end() ? 30.0 : duration->second;
+    const double duration_s = experiments::value_of(definition->duration, *values).value_or(30.0);
     if (auto allowed = lab::may_start_run(user, *booking, duration_s, now); !allowed) {
         const bool too_long = allowed.error().field == "duration_s";
         return tl::unexpected(too_long ? under_parameters(allowed.error()) : allowed.error());

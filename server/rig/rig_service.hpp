@@ -8,10 +8,10 @@
 
 #include "pipeline/core/error.hpp"
 #include "server/bus/bus.hpp"
-#include "server/experiments/definition.hpp"
 #include "server/lab/people.hpp"
 #include "server/lab/rig.hpp"
 #include "server/lab/run.hpp"
+#include "server/rig/experiment_library.hpp"
 #include "server/rig/rig_settings.hpp"
 #include "server/store/store.hpp"
 
@@ -27,10 +27,11 @@ struct RunRequest {
 class RigService {
 public:
     /// Marks runs that a crash left open as interrupted, then starts one worker for each rig. A rig
-    /// whose device is not there is offline, and tried again. Store and bus must outlive it.
+    /// whose device is not there is offline, and tried again. Library, store and bus must outlive
+    /// it.
     RigService(
         const std::vector<RigSettings>& rigs,
-        std::vector<experiments::Definition> definitions,
+        const ExperimentLibrary& library,
         store::Store& store,
         bus::Bus& bus
     );

@@ -17,15 +17,37 @@ namespace {
 
 using nlohmann::json;
 
+std::size_t tracked_in(const Trajectory& trajectory) {
+    const auto& samples = trajectory.samples;
+    return static_cast<std::size_t>(std::count_if(
+        samples.begin(),
+        samples.end(),
+        [](const auto& sample) { return sample.status == TrackStatus::tracked; }
+    ));
+}
+
+AnalysisConditions conditions_of(const lab::Run& run) {
+    AnalysisConditions conditions;
+    // Only a simulated rig has it as a parameter.
+    const auto gravity = run.parameters.find("gravity");
+    conditions.on_earth = gravity == run.parameters.end() || is_earthly(gravity->second);
+    return conditions;
+}
+
+RunAnalysis to_analysis(const experiments::Evaluation& evaluation) {
+    return {
+        evaluation.result.dump(),
+        evaluation.fit.dump(),
+        evaluation.plots.dump(),
+        evaluation.result["warnings"].get<std::vector<std::string>>()};
+}
+
 /// What somebody needs to come to the same numbers again. A simulated rig's source carries its
 /// seed: sim://rig-1?seed=1.
 experiments::Provenance provenance_of(
     const RunMeasured& measured, const std::vector<Trajectory>& trajectories
 ) {
     const auto& samples = trajectories.front().samples;
-    const auto tracked = std::count_if(samples.begin(), samples.end(), [](const auto& sample) {
-        return sample.status == TrackStatus::tracked;
-    });
     experiments::Provenance provenance;
     provenance.program_version = kVersion;
     provenance.source = measured.source.name;
@@ -35,7 +57,7 @@ experiments::Provenance provenance_of(
     provenance.first_frame = samples.front().t;
     provenance.last_frame = samples.back().t;
     provenance.frames = static_cast<std::size_t>(measured.run.frames);
-    provenance.frames_tracked = static_cast<std::size_t>(tracked);
+    provenance.frames_tracked = tracked_in(trajectories.front());
     return provenance;
 }
 
@@ -84,13 +106,9 @@ Result<RunAnalysis> analyse_run(
     const auto definition =
         experiments::read_definition(json::parse(run.definition_json, nullptr, false));
     if (!definition) return tl::unexpected(definition.error());
-    const RgbdCamera& camera = measured.source.camera;
-    AnalysisConditions conditions;
-    conditions.depth_scale_u = camera.depth_scale_u;
-    conditions.clock_u = camera.clock_u;
-    // Only a simulated rig has it as a parameter.
-    const auto gravity = run.parameters.find("gravity");
-    conditions.on_earth = gravity == run.parameters.end() || is_earthly(gravity->second);
+    AnalysisConditions conditions = conditions_of(run);
+    conditions.depth_scale_u = measured.source.camera.depth_scale_u;
+    conditions.clock_u = measured.source.camera.clock_u;
     auto evaluation = experiments::evaluate(
         {*definition, run.parameters, trajectories, conditions, {}},
         provenance_of(measured, trajectories),
@@ -98,19 +116,53 @@ Result<RunAnalysis> analyse_run(
     );
     if (!evaluation) return tl::unexpected(evaluation.error());
 
-    RunAnalysis analysis;
-    analysis.warnings = evaluation->outcome.warnings;
     if (!measured.source.T_lab_cam) {
-        analysis.warnings.emplace_back(
+        evaluation->result["warnings"].push_back(
             "The camera's place is not calibrated: it was taken to look level along y."
         );
-        evaluation->result["warnings"] = analysis.warnings;
     }
     add_run(evaluation->result["provenance"], run);
-    analysis.result_json = evaluation->result.dump();
-    analysis.fit_json = evaluation->fit.dump();
-    analysis.plots_json = evaluation->plots.dump();
-    return analysis;
+    return to_analysis(*evaluation);
+}
+
+Result<RunAnalysis> analyse_again(
+    const lab::Run& run,
+    const std::vector<Trajectory>& poses,
+    const std::string& earlier,
+    const Reanalysis& wish
+) {
+    if (poses.empty() || poses.front().samples.empty())
+        return fail(ErrorCode::bad_data, "", "nothing was measured in this run");
+    const json before = json::parse(earlier, nullptr, false);
+    const json known =
+        before.is_object() ? before.value("provenance", json::object()) : json::object();
+    const json camera = known.value("camera", json());
+    AnalysisConditions conditions = conditions_of(run);
+    if (camera.is_object()) {
+        conditions.depth_scale_u = camera.value("depth_scale_u", conditions.depth_scale_u);
+        conditions.clock_u = camera.value("clock_u", conditions.clock_u);
+    }
+    experiments::Provenance provenance;
+    provenance.program_version = kVersion;
+    provenance.source = known.value("source", run.rig);
+    provenance.frames = static_cast<std::size_t>(run.frames);
+    provenance.first_frame = poses.front().samples.front().t;
+    provenance.last_frame = poses.front().samples.back().t;
+    provenance.frames_tracked = tracked_in(poses.front());
+    auto evaluation = experiments::evaluate(
+        {wish.definition, run.parameters, poses, conditions, wish.settings},
+        provenance,
+        run.started.value_or(run.created)
+    );
+    if (!evaluation) return tl::unexpected(evaluation.error());
+    json& written = evaluation->result["provenance"];
+    for (const char* key : {"camera", "T_lab_cam", "lab_frame"})
+        if (known.contains(key)) written[key] = known[key];
+    add_run(written, run);
+    written["from"] = "stored poses";
+    written["analysed"] = lab::to_rfc3339(wish.at);
+    written["analysed_by"] = wish.person;
+    return to_analysis(*evaluation);
 }
 
 }  // namespace kinectlab::rig

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -8,6 +9,7 @@
 #include "pipeline/core/track_sample.hpp"
 #include "pipeline/core/trajectory.hpp"
 #include "pipeline/sensor/frame_source.hpp"
+#include "server/experiments/definition.hpp"
 #include "server/lab/run.hpp"
 
 namespace kinectlab::rig {
@@ -32,6 +34,23 @@ struct RunAnalysis {
 /// provenance of every number. Errors as the experiment's analysis.
 [[nodiscard]] Result<RunAnalysis> analyse_run(
     const RunMeasured& measured, const std::vector<Trajectory>& trajectories
+);
+
+/// What is to be different when a stored run is analysed once more.
+struct Reanalysis {
+    experiments::Definition definition;
+    std::map<std::string, std::optional<double>> settings;  ///< see experiments::Seen::overrides
+    std::string person;  ///< who asked for it, for the provenance
+    TimeNs at = 0;
+};
+
+/// A stored run from its stored poses, with camera and clock as `earlier`, a result of the same
+/// run, has them; without one they are taken to be a Kinect's. Errors as the analysis.
+[[nodiscard]] Result<RunAnalysis> analyse_again(
+    const lab::Run& run,
+    const std::vector<Trajectory>& poses,
+    const std::string& earlier,
+    const Reanalysis& wish
 );
 
 }  // namespace kinectlab::rig

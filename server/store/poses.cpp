@@ -10,12 +10,14 @@ namespace kinectlab::store {
 namespace {
 
 /// The columns as numbers; NaN is stored as NULL.
-constexpr int kNumbers = 20;
+constexpr int kNumbers = 26;
 using Numbers = std::array<double, kNumbers>;
 
 Numbers to_numbers(const MotionSample& s) {
     const Eigen::Vector3d sigma = s.sigma_p();
     const Eigen::Quaterniond& q = s.q_lab_obj;
+    Eigen::Matrix3d turn = s.covariance.bottomRightCorner<3, 3>();
+    if (!s.has_orientation) turn.setConstant(std::numeric_limits<double>::quiet_NaN());
     return {
         s.p_lab.x(),
         s.p_lab.y(),
@@ -36,7 +38,13 @@ Numbers to_numbers(const MotionSample& s) {
         s.w_lab.x(),
         s.w_lab.y(),
         s.w_lab.z(),
-        s.quality.rms_steps};
+        s.quality.rms_steps,
+        turn(0, 0),
+        turn(1, 1),
+        turn(2, 2),
+        turn(0, 1),
+        turn(0, 2),
+        turn(1, 2)};
 }
 
 void from_numbers(const Numbers& n, MotionSample& s) {
@@ -50,17 +58,22 @@ void from_numbers(const Numbers& n, MotionSample& s) {
     s.v_lab = {n[13], n[14], n[15]};
     s.w_lab = {n[16], n[17], n[18]};
     s.quality.rms_steps = n[19];
+    if (std::isnan(n[20])) return;
+    Eigen::Matrix3d turn;
+    turn << n[20], n[23], n[24], n[23], n[21], n[25], n[24], n[25], n[22];
+    s.covariance.bottomRightCorner<3, 3>() = turn;
 }
 
 constexpr const char* kInsert =
     "INSERT INTO poses (run_id, object, t_ns, status, has_orientation, points, inlier_share, "
-    "x, y, z, qx, qy, qz, qw, sx, sy, sz, cxy, cxz, cyz, vx, vy, vz, wx, wy, wz, rms_steps) "
-    "VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)";
+    "x, y, z, qx, qy, qz, qw, sx, sy, sz, cxy, cxz, cyz, vx, vy, vz, wx, wy, wz, rms_steps, "
+    "rxx, ryy, rzz, rxy, rxz, ryz) VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, "
+    "?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)";
 
 constexpr const char* kSelect =
     "SELECT object, t_ns, status, has_orientation, points, inlier_share, x, y, z, qx, qy, qz, qw, "
-    "sx, sy, sz, cxy, cxz, cyz, vx, vy, vz, wx, wy, wz, rms_steps FROM poses WHERE run_id = ? "
-    "ORDER BY object, t_ns";
+    "sx, sy, sz, cxy, cxz, cyz, vx, vy, vz, wx, wy, wz, rms_steps, rxx, ryy, rzz, rxy, rxz, ryz "
+    "FROM poses WHERE run_id = ? ORDER BY object, t_ns";
 
 void insert_pose(
     SQLite::Statement& insert, lab::RunId run, const std::string& object, const MotionSample& s

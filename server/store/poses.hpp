@@ -14,7 +14,8 @@ namespace kinectlab::store {
 
 struct StoredPose {
     std::string object;
-    MotionSample sample;  ///< acceleration and the covariance of the orientation are not stored
+    MotionSample
+        sample;  ///< acceleration, and what position and orientation have in common, are not stored
 };
 
 /// How many frames a measurement has seen and missed so far.

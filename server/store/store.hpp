@@ -2,6 +2,7 @@
 
 #include "server/store/bookings.hpp"
 #include "server/store/database.hpp"
+#include "server/store/definitions.hpp"
 #include "server/store/poses.hpp"
 #include "server/store/results.hpp"
 #include "server/store/runs.hpp"
@@ -23,6 +24,7 @@ struct Store {
     RunRepository runs{database};
     PoseRepository poses{database};
     ResultRepository results{database};
+    DefinitionRepository definitions{database};
 };
 
 }  // namespace kinectlab::store

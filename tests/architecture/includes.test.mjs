@@ -19,7 +19,7 @@ const rank = {
   'pipeline/motion': 1, 'pipeline/analysis': 1,
   'pipeline/track': 2, 'pipeline/drivers': 2,
   'pipeline/run': 3,
-  'server/lab': 4, 'server/experiments': 4, 'server/net': 4,
+  'server/lab': 4, 'server/experiments': 4, 'server/plots': 4, 'server/net': 4,
   'server/config': 5,
   'server/store': 5, 'server/bus': 5,
   'server/archive': 6, 'server/auth': 6, 'server/live': 6,
@@ -27,7 +27,7 @@ const rank = {
 };
 // Plain headers that describe a wire: both of its ends read them.
 const wires = new Set(['pipeline/drivers/simulated_rig/protocol.hpp']);
-const heavy = [/^pcl\//, /^opencv2\//, /^boost\/(beast|asio)/, /^OpenNI\.h$/, /^openni2\//, /^sqlite3\.h$/, /^SQLiteCpp\//, /^CLI\//, /^Driver\/Oni/];
+const heavy = [/^pcl\//, /^opencv2\//, /^boost\/(beast|asio)/, /^OpenNI\.h$/, /^openni2\//, /^sqlite3\.h$/, /^SQLiteCpp\//, /^CLI\//, /^Driver\/Oni/, /^cairo/];
 
 const layerOf = (file) => {
   const parts = file.split('/');

@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include "server/config/share.hpp"
+#include "server/experiments/share_dir.hpp"
 
 namespace kinectlab::experiments {
 namespace {
@@ -14,7 +14,7 @@ namespace {
 using testing::HasSubstr;
 
 Definition pendulum() {
-    auto definition = load_definition(config::share_dir() / "experiments", "pendulum");
+    auto definition = load_definition(experiments::share_dir() / "experiments", "pendulum");
     EXPECT_TRUE(definition) << to_text(definition.error());
     return definition.value_or(Definition{});
 }
@@ -93,7 +93,7 @@ TEST(Definition, ErrorsNameTheJsonPath) {
 }
 
 TEST(Definition, AnUnknownExperimentNamesTheNearest) {
-    const auto definition = load_definition(config::share_dir() / "experiments", "pendulm");
+    const auto definition = load_definition(experiments::share_dir() / "experiments", "pendulm");
     ASSERT_FALSE(definition);
     EXPECT_THAT(definition.error().cure, HasSubstr("pendulum"));
 }

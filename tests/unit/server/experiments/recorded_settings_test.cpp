@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "server/config/share.hpp"
+#include "server/experiments/share_dir.hpp"
 #include "tests/unit/pipeline/sensor/scratch_folder.hpp"
 
 namespace kinectlab::experiments {
@@ -13,7 +13,7 @@ using test::ScratchFolder;
 using test::write_text;
 
 Definition pendulum() {
-    return load_definition(config::share_dir() / "experiments", "pendulum").value();
+    return load_definition(experiments::share_dir() / "experiments", "pendulum").value();
 }
 
 TEST(RecordedSettings, StandBetweenTheGivenAndTheDefaults) {

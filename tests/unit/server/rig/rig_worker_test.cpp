@@ -124,7 +124,9 @@ TEST_F(RenderedRigWorkerTest, MeasuresGravityFromPreparationToResult) {
         EXPECT_TRUE(provenance.contains(key)) << key;
     }
     const auto fit = nlohmann::json::parse(store_->results.latest(done.id)->fit_json);
-    EXPECT_EQ(fit["t_s"].size(), fit["residual"]["x"].size());
+    const auto& bob = fit["objects"][0];
+    EXPECT_EQ(bob["object"], "bob");
+    EXPECT_EQ(bob["t_s"].size(), bob["residual"]["x"].size());
 
     const auto poses = store_->poses.of_run(done.id);
     ASSERT_EQ(poses.size(), 1U);
