@@ -1,5 +1,6 @@
 /** The definition of an experiment, as in server/experiments/*.json, and who it belongs to. */
 import { list, number, numberOrNull, record, text, texts, type Json } from './json';
+import type { FieldError } from './types';
 
 export interface Parameter {
   name: string;
@@ -72,6 +73,14 @@ export function readDefinition(name: string, json: unknown): ExperimentDefinitio
     mine: mine === true,
     document,
   };
+}
+
+/** What is wrong with a definition, its place as the definition itself has it; null if nothing is. */
+export function readCheck(json: unknown): FieldError | null {
+  const error = record(json)['error'];
+  if (error === undefined || error === null) return null;
+  const { field, message, cure } = record(error);
+  return { field: text(field).replace(/^definition\.?/, ''), message: text(message, 'is wrong'), ...(text(cure) ? { cure: text(cure) } : {}) };
 }
 
 function readParameter(experiment: string, p: Json): Parameter {

@@ -1,7 +1,7 @@
 /** Every request that the pages make, one function each. */
 import { readMethods, readPlots, readVersions } from './analysis';
 import { base, query, request } from './client';
-import { readDefinition, type ExperimentDefinition } from './experiment';
+import { readCheck, readDefinition, type ExperimentDefinition } from './experiment';
 import { record, type Json } from './json';
 import type { Booking, CreatedUser, FieldError, LiveTicket, NewBooking, NewUser, Result, Rig, Run, RunPage, Session, User } from './types';
 
@@ -33,7 +33,7 @@ export const publishExperiment = (name: string) => request<unknown>('POST', `/ex
 export const retireExperiment = (name: string) => request<void>('DELETE', `/experiments/${id(name)}`);
 /** What is wrong with a definition, and where; null if nothing is. */
 export const checkExperiment = async (definition: Json): Promise<FieldError | null> =>
-  (await request<{ ok: boolean; error?: FieldError }>('POST', '/experiments/check', { definition })).error ?? null;
+  readCheck(await request<unknown>('POST', '/experiments/check', { definition }));
 export const tryExperiment = async (definition: Json, runId: number) => {
   const answer = record(await request<unknown>('POST', '/experiments/try', { definition, run: runId }));
   return { result: answer['result'] as Result, plots: readPlots(answer) };
