@@ -47,11 +47,11 @@ function shower(fact: string, results: readonly Measurement[]): (value: number) 
   if (measured) {
     return (value) => {
       const shown = forPeople({ name: fact, value, u: 0, unit: measured.unit });
-      return formatQuantity(shown.value, shown.unit, 4);
+      return formatQuantity(shown.value, shown.unit, 3);
     };
   }
   if (fact.endsWith('_share')) return (value) => formatQuantity(value * 100, '%', 3);
-  return (value) => formatQuantity(value, splitName(fact).unit, 4);
+  return (value) => formatQuantity(value, splitName(fact).unit, 3);
 }
 
 function limits(min: number | null, max: number | null, show: (value: number) => string): string {

@@ -51,7 +51,7 @@ export interface Draft {
 
 export function draftOf(document: Json): Draft {
   const analysis = record(document['analysis']);
-  const part = (name: JsonPart) => (document[name] === undefined ? '' : JSON.stringify(document[name], null, 2));
+  const part = (name: JsonPart) => (document[name] === undefined ? '' : laidOut(document[name]));
   return {
     id: text(document['id']),
     title: text(document['title']),
@@ -171,6 +171,12 @@ export function jsonProblem(typed: string): string | null {
     const line = told ?? String((position === undefined ? typed : typed.slice(0, Number(position))).split('\n').length);
     return `is no JSON: see line ${line}`;
   }
+}
+
+/** A list with each of its elements on a line, as one writes it by hand. */
+function laidOut(value: unknown): string {
+  const flat = (v: unknown) => JSON.stringify(v, null, 1).replace(/\n\s*/g, ' ').replace(/^([[{]) /, '$1').replace(/ ([\]}])$/, '$1');
+  return Array.isArray(value) && value.length > 0 ? `[\n${value.map((v) => `  ${flat(v)}`).join(',\n')}\n]` : JSON.stringify(value, null, 2);
 }
 
 function sourceOf(value: unknown): SourceRow {
