@@ -190,7 +190,7 @@ test('an instructor copies an experiment, is told what is wrong and where, and m
   await page.getByTestId('check').getByText(/^Sequence, row 1/).waitFor();
   await edited(page, 'Sequence as JSON').fill('[{"do": "stop"},');
   await page.getByTestId('check').getByText(/no JSON: see line 1/).waitFor();
-  await edited(page, 'Sequence as JSON').fill('[{"do": "stop"}, {"do": "displace", "to": {"parameter": "amplitude_deg"}}]');
+  await edited(page, 'Sequence as JSON').fill('[{"do": "stop"}, {"do": "wait", "seconds": 1, "learn": true}, {"do": "displace", "to": {"parameter": "amplitude_deg"}}]');
   await page.getByTestId('check').getByText('Nothing is wrong with it.').waitFor();
   await page.getByRole('button', { name: 'Save as a draft' }).click();
   await page.getByRole('heading', { name: 'Pendulum on the Moon', level: 1 }).waitFor();
