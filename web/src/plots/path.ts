@@ -14,7 +14,7 @@ export function drawPaths(canvas: HTMLCanvasElement, tracks: readonly PathTrack[
   const paper = prepare(canvas);
   if (!paper) return;
   const { g, width, height } = paper;
-  const frame = { left: 40, top: 8, width: width - 48, height: height - 46 };
+  const frame = { left: 56, top: 8, width: width - 64, height: height - 46 };
   const seen = equalised(view, frame);
   const scale = scaleOf(seen, frame);
 
