@@ -8,6 +8,7 @@
 #include <Eigen/Eigenvalues>
 
 #include "pipeline/analysis/median.hpp"
+#include "pipeline/analysis/residual_correlation.hpp"
 
 namespace kinectlab {
 namespace {
@@ -249,8 +250,7 @@ private:
         const MatrixXd c = inverse(information);
 
         const auto j = jacobians(at_);
-        std::vector<VectorXd> scores;
-        std::vector<double> times;
+        std::vector<WhitenedSample> whitened;
         double chi2 = 0.0;
         for (std::size_t s = 0; s < samples_.size(); ++s) {
             if (!use_[s]) {
@@ -258,33 +258,24 @@ private:
                 continue;
             }
             const Vector3d w = rescale_ * samples_[s].whiten * r[s];
-            scores.emplace_back(j[s].transpose() * w);
-            times.push_back(samples_[s].t);
+            whitened.push_back({samples_[s].t, w, j[s]});
             fit.sum_of_squares += w.squaredNorm();
             chi2 += (samples_[s].whiten * r[s]).squaredNorm();
         }
-        MatrixXd independent = MatrixXd::Zero(n, n);
-        MatrixXd cross = MatrixXd::Zero(n, n);
-        for (std::size_t a = 0; a < scores.size(); ++a) {
-            independent.noalias() += scores[a] * scores[a].transpose();
-            VectorXd before = VectorXd::Zero(n);
-            for (std::size_t b = a; b-- > 0;) {
-                const double lag = (times[a] - times[b]) / settings.correlation_time_s;
-                if (lag >= 1.0) break;
-                before += (1.0 - lag) * scores[b];
-            }
-            cross.noalias() += scores[a] * before.transpose();
-        }
-        fit.degrees_of_freedom = 3 * static_cast<int>(scores.size()) - static_cast<int>(n);
-        const double spent = 3.0 * static_cast<double>(scores.size()) / fit.degrees_of_freedom;
-        MatrixXd noise = spent * c * independent * c;
-        const MatrixXd correlated = spent * c * (independent + cross + cross.transpose()) * c;
+        fit.degrees_of_freedom = 3 * static_cast<int>(whitened.size()) - static_cast<int>(n);
+        // Few samples tell more together with a model of their noise, many without one: whichever
+        // leaves the parameters less sure holds.
+        MatrixXd noise = covariance_by_lasting_noise(whitened, c, prior);
+        const MatrixXd products = 3.0 * static_cast<double>(whitened.size()) /
+                                  fit.degrees_of_freedom *
+                                  covariance_by_products(whitened, c, settings.correlation_time_s);
         VectorXd widen = VectorXd::Ones(n);
         for (Eigen::Index i = 0; i < n; ++i)
             if (noise(i, i) > 0.0)
-                widen[i] = std::sqrt(std::max(1.0, correlated(i, i) / noise(i, i)));
+                widen[i] = std::sqrt(std::max(1.0, products(i, i) / noise(i, i)));
         noise = widen.asDiagonal() * noise * widen.asDiagonal();
         fit.from_noise = spread(noise);
+        fit.by_prior = spread(c * prior.cwiseSqrt().asDiagonal());
         fit.from_priors = spread(c * prior.asDiagonal() * c);
         fit.reduced_chi2 = chi2 / fit.degrees_of_freedom;
         return fit;

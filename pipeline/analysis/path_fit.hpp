@@ -28,8 +28,9 @@ struct PathParameter {
 };
 
 struct PathFitSettings {
-    double outlier_sigma = 4.5;       ///< in three dimensions
-    double correlation_time_s = 0.1;  ///< over which the noise of neighbours may be alike
+    double outlier_sigma = 4.5;  ///< in three dimensions
+    double correlation_time_s =
+        0.1;  ///< over which products of neighbours count as noise that lasts
     bool allow_outliers = true;
 };
 
@@ -37,6 +38,9 @@ struct PathFit {
     Eigen::VectorXd parameters;
     Eigen::MatrixXd from_noise;   ///< covariance by the positions' own noise
     Eigen::MatrixXd from_priors;  ///< covariance by what was known before; their sum is the whole
+    /// Column k: what the parameters change by when the prior of parameter k is off by its
+    /// uncertainty; from_priors is the sum of their squares.
+    Eigen::MatrixXd by_prior;
     std::vector<Eigen::Vector3d> residuals;  ///< of all samples, m
     std::vector<bool> used;                  ///< false = outlier
     int outliers = 0;
@@ -51,9 +55,9 @@ struct PathFit {
 
 /// Fits a path to all positions at once: Levenberg-Marquardt with Huber's cost, then plain least
 /// squares without what lies beyond `outlier_sigma`; the noise is rescaled in each direction by
-/// what the residuals show, and its covariance takes in each sample's own residual (White,
-/// Econometrica 48 (1980)) and their correlation in time (Newey and West, Econometrica 55 (1987)).
-/// Errors (bad_data): no more samples than parameters, a start whose path is no number.
+/// what the residuals show, and the covariance takes in how long it lasts
+/// (residual_correlation.hpp). Errors (bad_data): no more samples than parameters, a start whose
+/// path is no number.
 [[nodiscard]] Result<PathFit> fit_path(
     std::span<const PositionSample> samples,
     const PathModel& model,

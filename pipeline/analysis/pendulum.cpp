@@ -2,17 +2,21 @@
 
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 #include <fmt/format.h>
 
 #include "pipeline/analysis/position_samples.hpp"
 #include "pipeline/analysis/swing_fit.hpp"
 #include "pipeline/analysis/swing_guess.hpp"
+#include "pipeline/analysis/swing_length.hpp"
 #include "pipeline/analysis/swing_measurements.hpp"
 #include "pipeline/analysis/swing_warnings.hpp"
 
 namespace kinectlab {
 namespace {
+
+constexpr double kStandardGravity = 9.80665;  // m/s²
 
 Result<void> check(const PendulumSettings& s) {
     const auto in_range =
@@ -83,6 +87,29 @@ ObjectFit for_plots(
     return plot;
 }
 
+/// A swing that is too short looks like another motion: tell how short it is
+/// instead. `what` where it was long enough, or failed for another reason.
+Error blame_length(
+    Error what, const std::vector<PositionSample>& samples, const PendulumSettings& settings
+) {
+    if (what.message != kAnotherMotion || !settings.on_earth) return what;
+    constexpr double kFewest = 3.0;
+    const double period = 2.0 * std::numbers::pi * std::sqrt(settings.length_m / kStandardGravity);
+    const double moved = longest_motion_s(samples, period);
+    if (moved >= kFewest * period) return what;
+    return {
+        ErrorCode::bad_data,
+        "samples",
+        fmt::format(
+            "the bob moves for {:.1f} s in one go, {:.1f} periods of a pendulum of {} m: too short",
+            moved,
+            moved / period,
+            settings.length_m
+        ),
+        "record at least three periods of free swing, ten or more for a good result; check "
+        "length_m"};
+}
+
 }  // namespace
 
 Result<PendulumResult> analyse_pendulum(
@@ -95,7 +122,7 @@ Result<PendulumResult> analyse_pendulum(
     if (!guess) return tl::unexpected(guess.error());
     guess->parameters.turning = earth_turning(settings.latitude_deg);
     const auto fit = fit_swing(*samples, *guess, swing_priors(settings));
-    if (!fit) return tl::unexpected(fit.error());
+    if (!fit) return tl::unexpected(blame_length(fit.error(), *samples, settings));
 
     if (auto ok = check_sides(*samples, *fit, guess->period); !ok)
         return tl::unexpected(ok.error());

@@ -152,7 +152,7 @@ Result<SwingParameters> follow_free_swing(
             return fail(
                 ErrorCode::bad_data,
                 "samples",
-                "the motion is not that of a pendulum of the given length",
+                kAnotherMotion,
                 "check length_m, and let the pendulum swing freely for at least three periods"
             );
         const PathTolerance tolerance{6.0 * noise, 0.1 * amplitude};

@@ -29,6 +29,10 @@ struct SwingFit {
     SwingVector by_radius;   ///< change of the parameters for each metre of the prior radius
 };
 
+/// The error's message where the equation cannot follow the motion.
+inline constexpr const char* kAnotherMotion =
+    "the motion is not that of a pendulum of the given length";
+
 /// Fits all parameters but the Earth's turning to all samples of the free swing that the guess lies
 /// in. Grows outward from the guess until the samples stop following the equation of motion (held,
 /// not yet released, stopped), robust at first (Huber), then by plain least squares without the

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
+#include <string_view>
 
 #include <Eigen/Geometry>
 
@@ -21,6 +23,17 @@ struct TrackQuality {
     int points = 0;             ///< depth pixels that the pose rests on
     double inlier_share = 0.0;  ///< of the pixels offered, 0 to 1
     double rms_steps = 0.0;     ///< RMS residual along the viewing rays, disparity steps
+    /// Why it is lost, for a person, as a constant of the program; empty where not known.
+    std::string_view why_lost;
+};
+
+/// How large a shape is, where that was free and measured; NaN elsewhere.
+struct ShapeSize {
+    static constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+    double radius_m = kNone;  ///< sphere and cylinder
+    double radius_u = kNone;
+    double half_angle_rad = kNone;  ///< cone: between its axis and its surface
+    double half_angle_u = kNone;
 };
 
 /// One object in one frame, in the depth camera's frame.
@@ -35,6 +48,7 @@ struct TrackSample {
     Eigen::Quaterniond q_cam_obj = Eigen::Quaterniond::Identity();
     Matrix6d covariance = Matrix6d::Zero();  ///< position (m²), then rotation vector (rad²)
     TrackQuality quality;
+    ShapeSize size;
 };
 
 }  // namespace kinectlab

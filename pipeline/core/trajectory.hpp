@@ -21,7 +21,13 @@ struct MotionSample {
     Eigen::Vector3d v_lab = Eigen::Vector3d::Zero();  ///< m/s
     Eigen::Vector3d a_lab = Eigen::Vector3d::Zero();  ///< m/s²
     Eigen::Vector3d w_lab = Eigen::Vector3d::Zero();  ///< rad/s
+    /// Standard uncertainties of v, a and w as the samples' covariances make them, each frame's
+    /// noise by itself; NaN where a covariance is missing.
+    Eigen::Vector3d sigma_v = Eigen::Vector3d::Zero();  ///< m/s
+    Eigen::Vector3d sigma_a = Eigen::Vector3d::Zero();  ///< m/s²
+    Eigen::Vector3d sigma_w = Eigen::Vector3d::Zero();  ///< rad/s
     TrackQuality quality;
+    ShapeSize size;
 
     [[nodiscard]] Eigen::Vector3d sigma_p() const {
         return covariance.diagonal().head<3>().cwiseSqrt();

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "pipeline/core/hot_loop.hpp"
+#include "pipeline/core/number_text.hpp"
 #include "pipeline/core/vector8.hpp"
 
 #pragma GCC diagnostic ignored "-Wpsabi"  // eight floats are passed to inlined functions only
@@ -315,7 +316,7 @@ Result<void> check(const Cloud& cloud, const Pinhole& camera, const NormalSettin
             "give the camera that the cloud was made with"
         );
     const auto wrong = [](const char* field, double value, const std::string& cure) {
-        return fail(ErrorCode::invalid_argument, field, "is " + std::to_string(value), cure);
+        return fail(ErrorCode::invalid_argument, field, "is " + number_text(value), cure);
     };
     if (settings.half_window < 1 || settings.half_window > NormalSettings::kMostHalfWindow)
         return wrong(

@@ -45,6 +45,9 @@ void fill(MotionSample& sample, const MotionSample& a, const MotionSample& b) {
     sample.has_orientation = a.has_orientation && b.has_orientation;
     if (sample.has_orientation) sample.q_lab_obj = a.q_lab_obj.slerp(s, b.q_lab_obj);
     sample.w_lab = (1.0 - s) * a.w_lab + s * b.w_lab;
+    sample.sigma_v = a.sigma_v.cwiseMax(b.sigma_v);
+    sample.sigma_a = a.sigma_a.cwiseMax(b.sigma_a);
+    sample.sigma_w = a.sigma_w.cwiseMax(b.sigma_w);
     // What lies between was not seen: add a share of how far the path leaves the straight line.
     sample.covariance = a.covariance.trace() > b.covariance.trace() ? a.covariance : b.covariance;
     const Eigen::Vector3d bend = sample.p_lab - ((1.0 - s) * a.p_lab + s * b.p_lab);
@@ -52,6 +55,7 @@ void fill(MotionSample& sample, const MotionSample& a, const MotionSample& b) {
     sample.covariance.topLeftCorner<3, 3>() +=
         kTrustInBend * kTrustInBend * bend * bend.transpose();
     sample.quality = {};
+    sample.size = {};
 }
 
 }  // namespace
@@ -64,6 +68,9 @@ void set_lost(MotionSample& sample) {
     sample.v_lab.setConstant(nan);
     sample.a_lab.setConstant(nan);
     sample.w_lab.setConstant(nan);
+    sample.sigma_v.setConstant(nan);
+    sample.sigma_a.setConstant(nan);
+    sample.sigma_w.setConstant(nan);
     sample.covariance.setConstant(nan);
 }
 

@@ -6,7 +6,8 @@
 
 namespace kinectlab {
 
-/// Marks a sample as lost: position, velocity, acceleration, angular velocity and covariance NaN.
+/// Marks a sample as lost: position, velocity, acceleration, angular velocity, their uncertainties
+/// and covariance NaN.
 void set_lost(MotionSample& sample);
 
 /// Gives the lost samples between two measured ones no more than max_step_s apart a place, and

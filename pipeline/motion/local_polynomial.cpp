@@ -61,8 +61,11 @@ std::optional<Derivatives> differentiate(
         const Normal covariance = inverse * spread * inverse;
         result.first[axis] = fitted[1] / half_window_s;
         result.first_variance[axis] = covariance(1, 1) / (half_window_s * half_window_s);
-        result.second[axis] = degree >= 2 ? 2.0 * fitted[2] / (half_window_s * half_window_s)
-                                          : std::numeric_limits<double>::quiet_NaN();
+        const double per_square = 2.0 / (half_window_s * half_window_s);
+        const double nan = std::numeric_limits<double>::quiet_NaN();
+        result.second[axis] = degree >= 2 ? per_square * fitted[2] : nan;
+        result.second_variance[axis] =
+            degree >= 2 ? per_square * per_square * covariance(2, 2) : nan;
     }
     return result;
 }

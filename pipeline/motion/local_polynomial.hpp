@@ -20,6 +20,7 @@ struct Derivatives {
     Eigen::Vector3d first = Eigen::Vector3d::Zero();
     Eigen::Vector3d second = Eigen::Vector3d::Zero();  ///< NaN where too few samples show it
     Eigen::Vector3d first_variance = Eigen::Vector3d::Zero();
+    Eigen::Vector3d second_variance = Eigen::Vector3d::Zero();  ///< NaN as `second`
 };
 
 /// Half of the window in seconds whose local cubic passes velocities up to `bandwidth_hz` (-3 dB).

@@ -33,6 +33,7 @@ MotionSample in_lab(const TrackSample& sample, const Eigen::Isometry3d& T_lab_ca
         motion.q_lab_obj = Eigen::Quaterniond(T_lab_cam.linear()) * sample.q_cam_obj;
     motion.covariance = rotated(sample.covariance, T_lab_cam.linear());
     motion.quality = sample.quality;
+    motion.size = sample.size;
     return motion;
 }
 
@@ -64,18 +65,32 @@ Eigen::Vector3d weightable(const Eigen::Vector3d& variance) {
     return (variance.array() > 0.0 && variance.array().isFinite()).select(variance, 1.0);
 }
 
+bool is_known(const Eigen::Vector3d& variance) {
+    return variance.allFinite() && variance.minCoeff() > 0.0;
+}
+
+/// Standard uncertainties; NaN where a variance that they rest on is missing.
+Eigen::Vector3d sigma(const Eigen::Vector3d& variance, bool known) {
+    if (!known) return Eigen::Vector3d::Constant(std::numeric_limits<double>::quiet_NaN());
+    return variance.cwiseSqrt();
+}
+
 void add_linear(const std::vector<MotionSample*>& stretch, double half_window_s) {
     std::vector<TimedVector> positions;
     positions.reserve(stretch.size());
-    for (const auto* sample : stretch)
-        positions.push_back(
-            {sample->t, sample->p_lab, weightable(sample->covariance.diagonal().head<3>())}
-        );
+    bool known = true;
+    for (const auto* sample : stretch) {
+        const Eigen::Vector3d variance = sample->covariance.diagonal().head<3>();
+        known = known && is_known(variance);
+        positions.push_back({sample->t, sample->p_lab, weightable(variance)});
+    }
     for (auto* sample : stretch) {
         const auto found = differentiate(positions, sample->t, half_window_s);
         const double nan = std::numeric_limits<double>::quiet_NaN();
         sample->v_lab = found ? found->first : Eigen::Vector3d::Constant(nan);
         sample->a_lab = found ? found->second : Eigen::Vector3d::Constant(nan);
+        sample->sigma_v = sigma(found ? found->first_variance : sample->v_lab, known);
+        sample->sigma_a = sigma(found ? found->second_variance : sample->a_lab, known);
     }
 }
 
@@ -92,16 +107,21 @@ void add_angular(const std::vector<MotionSample*>& stretch, double half_window_s
         while (first > 0 && near(*stretch[first - 1]))
             --first;
         turns.clear();
+        bool known = true;
         for (std::size_t k = first; k < stretch.size() && near(*stretch[k]); ++k)
-            if (stretch[k]->has_orientation)
+            if (stretch[k]->has_orientation) {
+                const Eigen::Vector3d variance = stretch[k]->covariance.diagonal().tail<3>();
+                known = known && is_known(variance);
                 turns.push_back(
                     {stretch[k]->t,
                      rotation_between(here.q_lab_obj, stretch[k]->q_lab_obj),
-                     weightable(stretch[k]->covariance.diagonal().tail<3>())}
+                     weightable(variance)}
                 );
+            }
         const auto found = differentiate(turns, here.t, half_window_s);
         here.w_lab = found ? found->first
                            : Eigen::Vector3d::Constant(std::numeric_limits<double>::quiet_NaN());
+        here.sigma_w = sigma(found ? found->first_variance : here.w_lab, known);
     }
 }
 

@@ -17,7 +17,8 @@ struct MotionSettings {
 };
 
 /// Samples of one object, in time order, camera frame → lab frame, gaps filled and marked, linear
-/// and angular velocity and acceleration. Samples without a pose are "lost" and their values NaN.
+/// and angular velocity and acceleration with their uncertainties. Samples without a pose are
+/// "lost" and their values NaN.
 [[nodiscard]] Trajectory to_trajectory(
     std::string object,
     std::span<const TrackSample> samples,

@@ -32,10 +32,7 @@ Result<void> remove_outliers(
 Result<void> smooth(
     RgbdFrame& frame, const RgbdCamera& camera, const MovingLeastSquaresSettings& settings
 ) {
-    // One pixel less than the most, for what rounding does.
-    drop_nearer_than(
-        frame.depth, settings.radius_m * camera.depth.fx / ((kMostPixels - 1) * camera.depth_unit_m)
-    );
+    drop_nearer_than(frame.depth, nearest_smoothed_m(camera, settings) / camera.depth_unit_m);
     const auto smoothed = smooth_organised(
         cloud_from(frame, camera.depth, camera.depth_unit_m), camera.depth, settings
     );
@@ -49,6 +46,11 @@ Result<void> smooth(
 }
 
 }  // namespace
+
+double nearest_smoothed_m(const RgbdCamera& camera, const MovingLeastSquaresSettings& settings) {
+    // One pixel less than the most, for what rounding does.
+    return settings.radius_m * std::max(camera.depth.fx, camera.depth.fy) / (kMostPixels - 1);
+}
 
 FrameCleaner::FrameCleaner(const RgbdCamera& camera, const PreprocessSettings& settings)
     : camera_(camera), outliers_(settings.outliers), smoothing_(settings.smoothing) {

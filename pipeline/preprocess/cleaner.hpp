@@ -7,6 +7,11 @@
 
 namespace kinectlab {
 
+/// Readings nearer than this are left out by smoothing: the radius would be more than kMostPixels.
+[[nodiscard]] double nearest_smoothed_m(
+    const RgbdCamera& camera, const MovingLeastSquaresSettings& settings
+);
+
 /// Outliers removed and surfaces smoothed in a whole depth picture, where the settings ask for it.
 /// Not thread-safe.
 class FrameCleaner {

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "pipeline/core/hot_loop.hpp"
+#include "pipeline/core/number_text.hpp"
 #include "pipeline/core/vector8.hpp"
 #include "pipeline/preprocess/moving_least_squares_settings.hpp"
 
@@ -251,7 +252,7 @@ Result<void> check_picture(const Cloud& cloud, const Pinhole& camera, double rad
         return fail(
             ErrorCode::bad_data,
             "cloud",
-            "has a point at z = " + std::to_string(nearest) + " m, which is not before the camera",
+            "has a point at z = " + number_text(nearest) + " m, which is not before the camera",
             "give points in the camera's frame, z forward"
         );
     const double pixels = radius_m * std::max(camera.fx, camera.fy) / nearest;
@@ -259,10 +260,10 @@ Result<void> check_picture(const Cloud& cloud, const Pinhole& camera, double rad
         return fail(
             ErrorCode::invalid_argument,
             "radius_m",
-            "is " + std::to_string(radius_m) + " m, which at the nearest point (" +
-                std::to_string(nearest) + " m) is " + std::to_string(pixels) + " pixels",
-            "give at most " +
-                std::to_string(kMostPixels * nearest / std::max(camera.fx, camera.fy)) + " m"
+            "is " + number_text(radius_m) + " m, which at the nearest point (" +
+                number_text(nearest) + " m) is " + number_text(pixels) + " pixels",
+            "give at most " + number_text(kMostPixels * nearest / std::max(camera.fx, camera.fy)) +
+                " m"
         );
     return {};
 }

@@ -2,11 +2,13 @@
 
 #include <cmath>
 
+#include "pipeline/core/number_text.hpp"
+
 namespace kinectlab {
 
 Result<void> check(const MovingLeastSquaresSettings& settings) {
     const auto wrong = [](const char* field, double value, const char* cure) {
-        return fail(ErrorCode::invalid_argument, field, "is " + std::to_string(value), cure);
+        return fail(ErrorCode::invalid_argument, field, "is " + number_text(value), cure);
     };
     const auto positive = [](double value) {
         return std::isfinite(value) && value > 0.0;

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "pipeline/core/hot_loop.hpp"
+#include "pipeline/core/number_text.hpp"
 #include "pipeline/core/vector8.hpp"
 #include "pipeline/preprocess/voxel_counts.hpp"
 
@@ -86,9 +87,9 @@ Error too_wide(const Cloud& cloud, std::size_t i, double voxel_m) {
     return {
         ErrorCode::invalid_argument,
         "voxel_m",
-        "is " + std::to_string(voxel_m) + " m, which is too fine for a cloud that reaches (" +
-            std::to_string(cloud.x[i]) + ", " + std::to_string(cloud.y[i]) + ", " +
-            std::to_string(cloud.z[i]) + ") m",
+        "is " + number_text(voxel_m) + " m, which is too fine for a cloud that reaches (" +
+            number_text(cloud.x[i]) + ", " + number_text(cloud.y[i]) + ", " +
+            number_text(cloud.z[i]) + ") m",
         "give larger voxels, or leave out points that far away"};
 }
 
@@ -162,7 +163,7 @@ Result<OctreeReference> OctreeReference::of(const Cloud& reference, double voxel
         return fail(
             ErrorCode::invalid_argument,
             "voxel_m",
-            "is " + std::to_string(voxel_m),
+            "is " + number_text(voxel_m),
             "give the edge of a voxel in metres, above 0, such as 0.02"
         );
     OctreeReference made(voxel_m);

@@ -4,6 +4,7 @@
 #include <limits>
 #include <string>
 
+#include "pipeline/core/number_text.hpp"
 #include "pipeline/preprocess/mean_distances.hpp"
 
 namespace kinectlab {
@@ -34,7 +35,7 @@ Result<void> check(const OutlierSettings& settings) {
         return fail(
             ErrorCode::invalid_argument,
             "sigma_factor",
-            "is " + std::to_string(settings.sigma_factor),
+            "is " + number_text(settings.sigma_factor),
             "give a number of standard deviations that is not negative, such as 1"
         );
     return {};

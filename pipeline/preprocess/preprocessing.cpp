@@ -22,7 +22,7 @@ Preprocessing::Preprocessing(const RgbdCamera& camera, const PreprocessSettings&
       change_(change_settings(camera)),
       segmenter_(change_, settings.min_segment_points) {
     if (median_rules_) median_.emplace(camera, settings.reference.seconds);
-    if (settings.change.method == ChangeMethod::octree) voxels_.emplace(camera, settings);
+    if (settings.change.method == ChangeMethod::octree) voxels_.emplace(camera, settings.change);
     runs_.reserve(most_runs(change_));
 }
 
@@ -63,7 +63,7 @@ Result<std::span<const std::uint16_t>> Preprocessing::reach_of(const RgbdFrame& 
             if (auto ok = voxels_->set_reference(scene()); !ok) return tl::unexpected(ok.error());
     }
     scene_is_new_ = false;
-    if (voxels_) return voxels_->reach(clean.depth);
+    if (voxels_) return voxels_->reach(clean.depth, limits_.reach());
     return limits_.reach();
 }
 

@@ -3,6 +3,8 @@
 #include <cmath>
 #include <string>
 
+#include "pipeline/core/number_text.hpp"
+
 namespace kinectlab {
 namespace {
 
@@ -19,7 +21,7 @@ Result<void> check(const Bound& bound) {
     return fail(
         ErrorCode::invalid_argument,
         std::string("preprocess.") + bound.field,
-        "is " + std::to_string(bound.value),
+        "is " + number_text(bound.value),
         bound.cure
     );
 }

@@ -42,16 +42,15 @@ struct ReferenceSettings {
 
 enum class ChangeMethod : std::uint8_t {
     image_grid,  ///< pixel by pixel in disparity: fast and sharp where the camera stands still
-    octree,      ///< voxels that were empty (the paper's III.B.3)
+    octree,      ///< voxels that were empty (the paper's III.B.3), before what the noise hides
 };
 inline constexpr std::array<std::string_view, 2> kChangeMethods{"image_grid", "octree"};
 
 struct ChangeDetectionSettings {
     ChangeMethod method = ChangeMethod::image_grid;
-    double threshold_steps =
-        4.0;                ///< image grid: disparity steps nearer than the reference = moved
-    double voxel_m = 0.05;  ///< octree: edge of a voxel; as wide as the noise at least
-    int least_points = 5;   ///< octree: fewer points in a voxel are noise
+    double threshold_steps = 4.0;  ///< disparity steps nearer than the reference = moved
+    double voxel_m = 0.05;         ///< octree: edge of a voxel
+    int least_points = 5;          ///< octree: fewer points in a voxel are noise
 };
 
 struct PreprocessSettings {

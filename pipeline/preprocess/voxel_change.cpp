@@ -1,18 +1,14 @@
 #include "pipeline/preprocess/voxel_change.hpp"
 
-#include <algorithm>
-
 namespace kinectlab {
 
-VoxelChange::VoxelChange(const RgbdCamera& camera, const PreprocessSettings& settings)
+VoxelChange::VoxelChange(const RgbdCamera& camera, const ChangeDetectionSettings& settings)
     : camera_(camera),
       scale_(camera),
-      cut_settings_(settings.depth_cut),
-      voxel_m_(settings.change.voxel_m),
-      least_points_(settings.change.least_points) {
+      voxel_m_(settings.voxel_m),
+      least_points_(settings.least_points) {
     const auto pixels = static_cast<std::size_t>(camera.depth.width) *
                         static_cast<std::size_t>(camera.depth.height);
-    farthest_.assign(pixels, 0.0F);
     disparity_.assign(pixels, 0.0F);
     reach_.assign(pixels, 0);
 }
@@ -36,26 +32,16 @@ Result<void> VoxelChange::set_reference(const SceneView& reference) {
     auto made = OctreeReference::of(cloud_of(reference.disparity), voxel_m_);
     if (!made) return tl::unexpected(made.error());
     reference_ = std::move(*made);
-
-    const int width = camera_.depth.width;
-    std::optional<DepthCut> cut;
-    if (cut_settings_.method == CutMethod::wall) cut = wall_cut(reference.disparity, width);
-    if (cut_settings_.method == CutMethod::fixed)
-        cut = DepthCut{scale_.steps_at(cut_settings_.farthest_m), 0.0, 0.0};
-    const DepthCut end = cut.value_or(DepthCut{});
-    for (std::size_t i = 0; i < farthest_.size(); ++i) {
-        const auto column = static_cast<double>(i % static_cast<std::size_t>(width));
-        const auto row = static_cast<double>(i / static_cast<std::size_t>(width));
-        farthest_[i] = std::max(reference.disparity[i], static_cast<float>(end.steps(column, row)));
-    }
     return {};
 }
 
-Result<std::span<const std::uint16_t>> VoxelChange::reach(std::span<const std::uint16_t> depth) {
+Result<std::span<const std::uint16_t>> VoxelChange::reach(
+    std::span<const std::uint16_t> depth, std::span<const std::uint16_t> limits
+) {
     const auto product = static_cast<float>(scale_.product);
     for (std::size_t i = 0; i < depth.size(); ++i) {
-        const float s = depth[i] == 0 ? 0.0F : product / static_cast<float>(depth[i]);
-        disparity_[i] = s > farthest_[i] ? s : 0.0F;
+        const bool before = static_cast<std::uint16_t>(depth[i] - 1) < limits[i];
+        disparity_[i] = before ? product / static_cast<float>(depth[i]) : 0.0F;
     }
     const auto change = reference_->changed(cloud_of(disparity_), least_points_);
     if (!change) return tl::unexpected(change.error());

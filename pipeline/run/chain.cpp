@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "pipeline/core/number_text.hpp"
 #include "pipeline/preprocess/preprocessing.hpp"
 #include "pipeline/track/tracker.hpp"
 
@@ -31,7 +32,7 @@ Result<void> check(const ChainSettings& settings) {
             return fail(
                 ErrorCode::invalid_argument,
                 "camera",
-                "a focal length, depth unit or noise is " + std::to_string(value),
+                "a focal length, depth unit or noise is " + number_text(value),
                 "all of them are above 0"
             );
     return check(settings.preprocess);
@@ -133,8 +134,10 @@ Result<std::span<const TrackSample>> Chain::track(const RgbdFrame& frame) {
     const auto moved = s.preprocessing.moved(**clean);
     if (!moved) return tl::unexpected(moved.error());
     s.samples.clear();
-    for (const auto& tracker : s.trackers)
+    for (const auto& tracker : s.trackers) {
         tracker->track(**clean, *moved, s.samples);
+        if (auto fault = tracker->take_fault()) return tl::unexpected(std::move(*fault));
+    }
     std::sort(s.samples.begin(), s.samples.end(), [](const TrackSample& a, const TrackSample& b) {
         if (a.object != b.object) return a.object < b.object;
         if (a.quality.points != b.quality.points) return a.quality.points > b.quality.points;

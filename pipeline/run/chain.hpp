@@ -45,7 +45,8 @@ public:
     [[nodiscard]] Result<void> uncover(const RgbdFrame& frame);
 
     /// One sample for each object (method "change": one for each thing known, biggest first, with
-    /// its identity); status is tracked or lost. The span is valid until the next call.
+    /// its identity); status is tracked or lost. The span is valid until the next call. A setting
+    /// that turns out wrong once a frame is seen, as a click where there is no depth, is refused.
     [[nodiscard]] Result<std::span<const TrackSample>> track(const RgbdFrame& frame);
 
     /// Forgets the reference: the camera or the scene was moved.

@@ -30,7 +30,7 @@ public:
         if (!object.is_object()) refuse("", "is no JSON object", "give {\"fx\": …}");
         for (const auto& [key, value] : object.items()) {
             if (std::find(keys.begin(), keys.end(), key) != keys.end()) continue;
-            refuse(key, "is not known", "did you mean " + nearest_name(key, keys) + "?");
+            refuse(key, "is not known", did_you_mean(key, keys));
         }
     }
 
@@ -150,7 +150,7 @@ std::optional<Eigen::Isometry3d> read_pose(Members& members) {
     return T;
 }
 
-Result<CameraFile> read_document(const json& document) {
+Result<CameraFile> read_document(const json& document, DepthUnit unit) {
     Members members(
         document,
         "",
@@ -173,7 +173,8 @@ Result<CameraFile> read_document(const json& document) {
     auto& camera = file.camera;
     camera.depth = read_pinhole(members, file.has_size);
     camera.colour = camera.depth;
-    camera.depth_unit_m = 1.0 / members.number("depth_scale", 1.0, 1e6);
+    if (unit == DepthUnit::in_counts || members.has("depth_scale"))
+        camera.depth_unit_m = 1.0 / members.number("depth_scale", 1.0, 1e6);
     camera.depth_scale_u = members.number_or("depth_scale_u", 0.0, 0.5, camera.depth_scale_u);
     camera.clock_u = members.number_or("clock_u", 0.0, 0.1, camera.clock_u);
     if (members.has("T_lab_cam")) file.T_lab_cam = read_pose(members);
@@ -224,7 +225,7 @@ CameraFile default_camera() {
     return file;
 }
 
-Result<CameraFile> read_camera_json(const std::filesystem::path& path) {
+Result<CameraFile> read_camera_json(const std::filesystem::path& path, DepthUnit unit) {
     std::vector<std::uint8_t> bytes;
     if (auto read = read_file(path, kMaxBytes, bytes); !read)
         return tl::unexpected<Error>(read.error());
@@ -237,7 +238,7 @@ Result<CameraFile> read_camera_json(const std::filesystem::path& path) {
             R"(give {"fx": 525, "fy": 525, "cx": 319.5, "cy": 239.5, "depth_scale": 5000})"
         );
     }
-    return read_document(document).map_error([&](Error error) {
+    return read_document(document, unit).map_error([&](Error error) {
         error.field = path.string() + (error.field.empty() ? "" : ": " + error.field);
         return error;
     });

@@ -11,9 +11,9 @@ namespace kinectlab {
 /// What camera.json says beside a recording. Matrices are lists of rows, lengths metres.
 ///
 ///   fx, fy, cx, cy       depth camera, px                                      (required)
-///   depth_scale          counts of a depth pixel for each metre                (required)
-///   width, height        of its pictures, px; without them those of the first picture
-///   color                colour camera where it is another one: fx, fy, cx, cy, [width, height],
+///   depth_scale          counts of a depth pixel for each metre                (required but for
+///   PCD) width, height        of its pictures, px; without them those of the first picture color
+///   colour camera where it is another one: fx, fy, cx, cy, [width, height],
 ///                        R_color_depth (3x3), t_color_depth_m (3): p_color = R p_depth + t
 ///   T_lab_cam            4x4: p_lab = T p_cam, lab z up, x along the main motion
 ///   depth_scale_u        relative standard uncertainty of depth_scale
@@ -32,7 +32,12 @@ struct CameraFile {
     std::optional<double> frame_rate_hz;
 };
 
-[[nodiscard]] Result<CameraFile> read_camera_json(const std::filesystem::path& file);
+/// Whether depth comes in counts, whose unit depth_scale tells, or in metres, which need none.
+enum class DepthUnit { in_counts, known };
+
+[[nodiscard]] Result<CameraFile> read_camera_json(
+    const std::filesystem::path& file, DepthUnit unit = DepthUnit::in_counts
+);
 
 /// The camera of a folder without camera.json: 640x480, 525, 525, 319.5, 239.5, 5000 (TUM, PCL).
 [[nodiscard]] CameraFile default_camera();

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "pipeline/core/file_ending.hpp"
 #include "pipeline/sensor/file_bytes.hpp"
 #include "pipeline/sensor/mesh_text.hpp"
 #include "pipeline/sensor/pcd_file.hpp"
@@ -75,7 +76,10 @@ Result<MeshFile> tidied(TriangleMesh mesh, const std::string& name) {
         return fail(
             ErrorCode::bad_data,
             name,
-            "holds no points (" + std::to_string(file.dropped_vertices) + " are not finite)",
+            file.dropped_vertices == 0
+                ? std::string("holds no points")
+                : "holds no point that is one: all " + std::to_string(file.dropped_vertices) +
+                      " have coordinates that are NaN or infinite",
             "give a model with a surface"
         );
     if (file.mesh.triangles.empty() && file.dropped_triangles > 0)
@@ -99,14 +103,18 @@ Result<MeshFile> parse_pcd_points(std::span<const std::uint8_t> file, const std:
     for (std::size_t i = 0; i < cloud->x.size(); ++i)
         if (!std::isnan(cloud->x[i]) || !std::isnan(cloud->y[i]) || !std::isnan(cloud->z[i]))
             mesh.vertices.emplace_back(cloud->x[i], cloud->y[i], cloud->z[i]);
+    if (mesh.vertices.empty())
+        return fail(
+            ErrorCode::bad_data,
+            name,
+            "holds no reading: all " + std::to_string(cloud->x.size()) + " points are NaN",
+            "give a cloud in which the thing is seen"
+        );
     return mesh::tidied(std::move(mesh), name);
 }
 
 Result<MeshFile> read_mesh(const std::filesystem::path& file) {
-    std::string ending = file.extension().string();
-    std::transform(ending.begin(), ending.end(), ending.begin(), [](unsigned char c) {
-        return static_cast<char>(std::tolower(c));
-    });
+    const std::string ending = file_ending(file);
     const auto parse = ending == ".ply"   ? parse_ply
                        : ending == ".obj" ? parse_obj
                        : ending == ".stl" ? parse_stl

@@ -55,8 +55,8 @@ bool take_fields(const Words& words, std::vector<PcdField>& fields) {
 }
 
 bool take_side(const Words& words, int& side) {
-    const auto value = words.size() == 2 ? to_int(words[1], 1, 1 << 24) : std::nullopt;
-    side = value.value_or(0);
+    const auto value = words.size() == 2 ? to_int(words[1], 0, 1 << 24) : std::nullopt;
+    if (value) side = *value;
     return value.has_value();
 }
 
@@ -84,9 +84,14 @@ Result<PcdHeader> check(PcdHeader header, const std::string& name, PcdShape shap
     const auto bad = [&](std::string message, std::string cure) {
         return fail(ErrorCode::bad_data, name, std::move(message), std::move(cure));
     };
-    if (header.width == 0 || header.height == 0)
+    if (header.width < 0 || header.height < 0)
         return bad("has no WIDTH or no HEIGHT", "give both in the header");
     const std::string size = std::to_string(header.width) + "x" + std::to_string(header.height);
+    if (header.width == 0 || header.height == 0)
+        return bad(
+            "is empty: its header says " + size + " points",
+            "give a cloud with points, or leave the file out"
+        );
     const bool is_list = header.height == 1;
     if (is_list && shape == PcdShape::organised)
         return bad("is not organised: " + size, "give a cloud as the sensor took it, e.g. 640x480");
@@ -121,12 +126,28 @@ Result<PcdHeader> check(PcdHeader header, const std::string& name, PcdShape shap
     return header;
 }
 
+/// What a line says, as far as it is text and short.
+std::string shown(const Words& words) {
+    std::string line;
+    for (const auto& word : words)
+        line += (line.empty() ? "" : " ") + word;
+    const auto strange = std::find_if(line.begin(), line.end(), [](unsigned char c) {
+        return c < 0x20 || c > 0x7e;
+    });
+    line.erase(strange, line.end());
+    line.resize(std::min<std::size_t>(line.size(), 60));
+    line.insert(line.begin(), '"');
+    line.push_back('"');
+    return line;
+}
+
 }  // namespace
 
 Result<PcdHeader> parse_pcd_header(
     std::span<const std::uint8_t> file, const std::string& name, PcdShape shape
 ) {
     PcdHeader header;
+    header.width = header.height = -1;  // not said yet
     const auto limit = file.first(std::min(file.size(), kMaxHeader));
     std::size_t start = 0;
     for (int number = 1; start < limit.size(); ++number) {
@@ -145,8 +166,8 @@ Result<PcdHeader> parse_pcd_header(
             return fail(
                 ErrorCode::bad_data,
                 name + ":" + std::to_string(number),
-                "is no line of a PCD header",
-                "give a PCD file of version 0.7"
+                shown(words) + " is no line of a PCD header",
+                "give a PCD file of version 0.7, with as many SIZE, TYPE and COUNT as FIELDS"
             );
         }
         if (words[0] != "DATA") continue;

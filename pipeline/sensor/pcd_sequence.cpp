@@ -2,7 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
+#include "pipeline/core/file_ending.hpp"
+#include "pipeline/core/number_text.hpp"
 #include "pipeline/sensor/camera_json.hpp"
 #include "pipeline/sensor/file_bytes.hpp"
 #include "pipeline/sensor/pcd_file.hpp"
@@ -53,7 +56,7 @@ std::vector<fs::path> files_of(const fs::path& path) {
     if (!fs::is_directory(path, code)) return {path};
     std::vector<fs::path> files;
     for (const auto& entry : fs::directory_iterator(path, code)) {
-        if (entry.path().extension() == ".pcd" && files.size() < kMaxFiles)
+        if (file_ending(entry.path()) == ".pcd" && files.size() < kMaxFiles)
             files.push_back(entry.path());
     }
     std::sort(files.begin(), files.end(), [](const fs::path& a, const fs::path& b) {
@@ -102,13 +105,29 @@ double share_off_rays(const PcdCloud& cloud, const Pinhole& camera) {
             if (!(dx < kRayTolerance && dy < kRayTolerance)) ++off;
         }
     }
-    return seen == 0 ? 1.0 : static_cast<double>(off) / static_cast<double>(seen);
+    return seen == 0 ? 0.0 : static_cast<double>(off) / static_cast<double>(seen);
+}
+
+/// Not a frame without readings, but one whose points all lie where no count reaches: in another
+/// unit, mostly. Gives the distance of the nearest one.
+std::optional<float> nearest_out_of_reach(
+    const PcdCloud& cloud, const std::vector<std::uint16_t>& depth
+) {
+    const auto is_reading = [](std::uint16_t counts) {
+        return counts != 0;
+    };
+    if (std::any_of(depth.begin(), depth.end(), is_reading)) return std::nullopt;
+    std::optional<float> nearest;
+    for (const float z : cloud.z)
+        if (std::isfinite(z) && z != 0.0F && (!nearest || std::abs(z) < std::abs(*nearest)))
+            nearest = z;
+    return nearest;
 }
 
 class PcdSequence : public FrameSource {
 public:
-    PcdSequence(SourceInfo info, std::vector<fs::path> files)
-        : info_(std::move(info)), files_(std::move(files)) {}
+    PcdSequence(SourceInfo info, std::vector<fs::path> files, std::string size_from)
+        : info_(std::move(info)), files_(std::move(files)), size_from_(std::move(size_from)) {}
 
     [[nodiscard]] const SourceInfo& info() const override { return info_; }
 
@@ -123,6 +142,14 @@ public:
         if (auto fits = check(*cloud, name); !fits) return tl::unexpected<Error>(fits.error());
         frame.depth.resize(cloud->z.size());
         std::transform(cloud->z.begin(), cloud->z.end(), frame.depth.begin(), to_counts);
+        if (const auto z = nearest_out_of_reach(*cloud, frame.depth))
+            return fail(
+                ErrorCode::bad_data,
+                name,
+                "has no point between 0.0002 and 13.1 m before the camera; the nearest is at z = " +
+                    number_text(*z),
+                "give metres (millimetres: divide by 1000), x right, y down, z forward"
+            );
         frame.rgb = std::move(cloud->rgb);
         frame.index = position_++;
         frame.t = static_cast<TimeNs>(frame.index) * kNsPerSecond / 30;
@@ -137,16 +164,18 @@ private:
             return fail(
                 ErrorCode::bad_data,
                 name,
-                "is " + std::to_string(cloud.width) + "x" + std::to_string(cloud.height),
-                "the camera's pictures are " + std::to_string(camera.width) + "x" +
-                    std::to_string(camera.height)
+                "is " + std::to_string(cloud.width) + "x" + std::to_string(cloud.height) +
+                    ", but " + size_from_ + " " + std::to_string(camera.width) + "x" +
+                    std::to_string(camera.height),
+                "give clouds of one camera, all of one size, and its width and height in "
+                "camera.json"
             );
         }
         if (share_off_rays(cloud, camera) > 0.5) {
             return fail(
                 ErrorCode::bad_data,
                 name,
-                "has points that do not lie on the camera's rays (fx " + std::to_string(camera.fx) +
+                "has points that do not lie on the camera's rays (fx " + number_text(camera.fx) +
                     ")",
                 "give x right, y down, z forward, and camera.json beside the file if it is another "
                 "camera"
@@ -157,6 +186,7 @@ private:
 
     SourceInfo info_;
     std::vector<fs::path> files_;
+    std::string size_from_;
     std::size_t position_ = 0;
     std::vector<std::uint8_t> bytes_;
 };
@@ -172,13 +202,21 @@ Result<CameraFile> camera_of(const fs::path& folder, const fs::path& first) {
     if (!header) return tl::unexpected<Error>(header.error());
     std::error_code code;
     const fs::path json = folder / "camera.json";
-    auto file =
-        fs::exists(json, code) ? read_camera_json(json) : Result<CameraFile>(default_camera());
+    auto file = fs::exists(json, code) ? read_camera_json(json, DepthUnit::known)
+                                       : Result<CameraFile>(default_camera());
     if (file && !file->has_size) {
         file->camera.depth.width = header->width;
         file->camera.depth.height = header->height;
     }
     return file;
+}
+
+/// What says how large clouds must be.
+std::string size_from(const CameraFile& file, const fs::path& first) {
+    std::error_code code;
+    if (!fs::exists(first.parent_path() / "camera.json", code))
+        return "without camera.json the camera has";
+    return file.has_size ? "camera.json says" : "the first, " + first.filename().string() + ", is";
 }
 
 }  // namespace
@@ -204,7 +242,10 @@ Result<std::unique_ptr<FrameSource>> open_pcd_sequence(const fs::path& path) {
     info.camera.T_colour_depth = Eigen::Isometry3d::Identity();
     info.T_lab_cam = file->T_lab_cam;
     info.frame_count = files.size();
-    return std::make_unique<PcdSequence>(std::move(info), std::move(files));
+    const fs::path first = files.front();
+    return std::make_unique<PcdSequence>(
+        std::move(info), std::move(files), size_from(*file, first)
+    );
 }
 
 }  // namespace kinectlab

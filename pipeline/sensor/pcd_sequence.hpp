@@ -13,7 +13,9 @@ namespace kinectlab {
 /// whose points do not lie on that camera's rays is refused. Depth counts are 0.2 mm, which reaches
 /// to 13.1 m; NaN and points behind the camera or beyond that become 0. A frame all of whose points
 /// lie behind the camera has y up and z backwards, as PCL's viewers write it, and is turned about
-/// x.
+/// x. A cloud of NaN alone is a frame without readings; one whose points all lie out of reach, as
+/// in millimetres, is refused, and so is an empty one (WIDTH 0) or one of another size. camera.json
+/// needs no depth_scale here: coordinates are metres.
 [[nodiscard]] Result<std::unique_ptr<FrameSource>> open_pcd_sequence(
     const std::filesystem::path& path
 );

@@ -1,6 +1,9 @@
 #include "pipeline/sensor/png_image.hpp"
 
+#include <algorithm>
+#include <array>
 #include <cstdlib>
+#include <cstring>
 #include <memory>
 #include <stdexcept>
 
@@ -95,7 +98,55 @@ std::string describe(const spng_ihdr& header) {
     return std::to_string(header.bit_depth) + "-bit " + colours;
 }
 
+constexpr std::size_t kSignature = 8;
+
+/// CRC-32 as PNG has it, byte by byte from a table.
+constexpr std::array<std::uint32_t, 256> kCrcTable = [] {
+    std::array<std::uint32_t, 256> table{};
+    for (std::uint32_t n = 0; n < 256; ++n) {
+        std::uint32_t c = n;
+        for (int k = 0; k < 8; ++k)
+            c = (c & 1U) != 0 ? 0xEDB88320U ^ (c >> 1U) : c >> 1U;
+        table[n] = c;
+    }
+    return table;
+}();
+
+std::uint32_t crc_of(std::span<const std::uint8_t> bytes) {
+    std::uint32_t c = 0xFFFFFFFFU;
+    for (const std::uint8_t byte : bytes)
+        c = kCrcTable[(c ^ byte) & 0xFFU] ^ (c >> 8U);
+    return ~c;
+}
+
+std::uint32_t big_endian(std::span<const std::uint8_t> bytes) {
+    std::uint32_t value = 0;
+    for (const std::uint8_t byte : bytes.first(4))
+        value = value << 8U | byte;
+    return value;
+}
+
 }  // namespace
+
+Result<void> check_png(std::span<const std::uint8_t> file, const std::string& name) {
+    const auto bad = [&](const char* message) {
+        return fail(ErrorCode::bad_data, name, message, "give an undamaged PNG file");
+    };
+    constexpr std::array<std::uint8_t, kSignature> kBegin{137, 80, 78, 71, 13, 10, 26, 10};
+    if (file.size() < kSignature || !std::equal(kBegin.begin(), kBegin.end(), file.begin()))
+        return bad("is no PNG");
+    auto rest = file.subspan(kSignature);
+    while (rest.size() >= 12) {  // length, kind, data, checksum
+        const std::size_t length = big_endian(rest);
+        if (length > rest.size() - 12) break;
+        const auto kind_and_data = rest.subspan(4, length + 4);
+        if (crc_of(kind_and_data) != big_endian(rest.subspan(length + 8)))
+            return bad("is damaged: a checksum is wrong");
+        if (std::memcmp(kind_and_data.data(), "IEND", 4) == 0) return {};
+        rest = rest.subspan(length + 12);
+    }
+    return bad("is damaged: it ends too early");
+}
 
 Result<PngSize> read_png_size(
     std::span<const std::uint8_t> file, PngKind kind, const std::string& name

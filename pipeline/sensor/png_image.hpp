@@ -35,6 +35,10 @@ struct PngSize {
     std::span<const std::uint8_t> file, std::span<std::uint8_t> rgb, const std::string& name
 );
 
+/// Whether a file is whole, without decoding it: its chunks follow each other to the end, and their
+/// checksums are right.
+[[nodiscard]] Result<void> check_png(std::span<const std::uint8_t> file, const std::string& name);
+
 /// The file's bytes; fast rather than small. Throws if the encoder fails.
 [[nodiscard]] std::vector<std::uint8_t> encode_png(
     std::span<const std::uint16_t> depth, PngSize size

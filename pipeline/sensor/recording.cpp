@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "pipeline/core/file_ending.hpp"
 #include "pipeline/sensor/oni_recording.hpp"
 #include "pipeline/sensor/pcd_sequence.hpp"
 #include "pipeline/sensor/tum_sequence.hpp"
@@ -14,7 +15,7 @@ namespace fs = std::filesystem;
 bool holds_pcd(const fs::path& folder) {
     std::error_code code;
     const auto is_pcd = [](const fs::directory_entry& entry) {
-        return entry.path().extension() == ".pcd";
+        return file_ending(entry.path()) == ".pcd";
     };
     return std::any_of(fs::directory_iterator(folder, code), fs::directory_iterator(), is_pcd);
 }
@@ -38,8 +39,8 @@ Result<std::unique_ptr<FrameSource>> open_recording(
         return !has_list && holds_pcd(path) ? open_pcd_sequence(path)
                                             : open_tum_sequence(path, options.with_colour);
     }
-    if (path.extension() == ".pcd") return open_pcd_sequence(path);
-    if (path.extension() == ".oni") return open_oni(path, options.with_colour);
+    if (file_ending(path) == ".pcd") return open_pcd_sequence(path);
+    if (file_ending(path) == ".oni") return open_oni(path, options.with_colour);
     return fail(
         ErrorCode::bad_data,
         path.string(),

@@ -119,6 +119,25 @@ CameraFile camera_file(const SourceInfo& source) {
     return file;
 }
 
+std::string truth_line(const TumPose& pose) {
+    std::array<char, 256> line{};
+    const auto& [t, p, q] = pose;
+    std::snprintf(
+        line.data(),
+        line.size(),
+        "%s %.9g %.9g %.9g %.9g %.9g %.9g %.9g\n",
+        format_timestamp(t).c_str(),
+        p.x(),
+        p.y(),
+        p.z(),
+        q.x(),
+        q.y(),
+        q.z(),
+        q.w()
+    );
+    return line.data();
+}
+
 }  // namespace
 
 struct SequenceWriter::State {
@@ -129,7 +148,7 @@ struct SequenceWriter::State {
     TimeNs last_t_colour = -1;
     std::string depth_list = "# timestamp path\n";
     std::string rgb_list = "# timestamp path\n";
-    std::string truth_list;
+    std::map<std::string, std::string> truths;  ///< by file
     std::unique_ptr<Encoders> encoders;
 
     ~State() {
@@ -223,22 +242,11 @@ Result<void> SequenceWriter::add(const RgbdFrame& frame) {
 }
 
 void SequenceWriter::add_truth(const TumPose& pose) {
-    std::array<char, 256> line{};
-    const auto& [t, p, q] = pose;
-    std::snprintf(
-        line.data(),
-        line.size(),
-        "%s %.9g %.9g %.9g %.9g %.9g %.9g %.9g\n",
-        format_timestamp(t).c_str(),
-        p.x(),
-        p.y(),
-        p.z(),
-        q.x(),
-        q.y(),
-        q.z(),
-        q.w()
-    );
-    state_->truth_list += line.data();
+    state_->truths["groundtruth.txt"] += truth_line(pose);
+}
+
+void SequenceWriter::add_truth_of(const std::string& name, const TumPose& pose) {
+    state_->truths["groundtruth_" + name + ".txt"] += truth_line(pose);
 }
 
 void SequenceWriter::add_file(const std::string& name, const std::string& content) {
@@ -248,11 +256,8 @@ void SequenceWriter::add_file(const std::string& name, const std::string& conten
 void SequenceWriter::finish() {
     auto& s = *state_;
     s.encoders->finish();
-    if (!s.truth_list.empty()) {
-        write_text(
-            s.partial / "groundtruth.txt", "# timestamp tx ty tz qx qy qz qw\n" + s.truth_list
-        );
-    }
+    for (const auto& [file, lines] : s.truths)
+        write_text(s.partial / file, "# timestamp tx ty tz qx qy qz qw\n" + lines);
     if (s.last_t_colour >= 0) {
         write_text(s.partial / "rgb.txt", s.rgb_list);
     } else {

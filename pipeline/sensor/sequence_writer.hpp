@@ -34,6 +34,9 @@ public:
     /// A line of groundtruth.txt: where the object of the experiment really is (lab frame).
     void add_truth(const TumPose& pose);
 
+    /// A line of groundtruth_NAME.txt, for one of several objects; `name` is fit for a file.
+    void add_truth_of(const std::string& name, const TumPose& pose);
+
     /// Any further file, e.g. with the settings of a simulation; `name` without folders.
     void add_file(const std::string& name, const std::string& content);
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "pipeline/core/number_text.hpp"
 #include "pipeline/sensor/camera_json.hpp"
 #include "pipeline/sensor/file_bytes.hpp"
 #include "pipeline/sensor/png_image.hpp"
@@ -34,8 +35,8 @@ Result<void> fit_size(Pinhole& pinhole, bool has_size, PngSize size, const fs::p
         return fail(
             ErrorCode::bad_data,
             file.string(),
-            "is " + text_of(size),
-            "the camera's pictures are " + text_of(expected)
+            "is " + text_of(size) + ", but the camera's pictures are " + text_of(expected),
+            "give pictures of the camera's size, or width and height in camera.json"
         );
     }
     pinhole.width = size.width;
@@ -47,7 +48,7 @@ Result<void> fit_size(Pinhole& pinhole, bool has_size, PngSize size, const fs::p
             ErrorCode::bad_data,
             file.string(),
             "is " + text_of(size) + ", which does not fit the camera: its centre is at cx " +
-                std::to_string(pinhole.cx) + ", cy " + std::to_string(pinhole.cy),
+                number_text(pinhole.cx) + ", cy " + number_text(pinhole.cy),
             "give pictures of the camera's size, or width and height in camera.json"
         );
     }
@@ -98,8 +99,8 @@ private:
             return fail(
                 ErrorCode::bad_data,
                 file.string(),
-                "is " + text_of(*size),
-                "the camera's pictures are " + text_of(expected)
+                "is " + text_of(*size) + ", but the pictures before it are " + text_of(expected),
+                "give pictures of one size"
             );
         }
         pixels.resize(
@@ -171,6 +172,24 @@ Result<std::unique_ptr<FrameSource>> open_tum_sequence(const fs::path& folder, b
     if (step > 0) info.frame_rate_hz = 1e9 / static_cast<double>(step);
     if (file->frame_rate_hz) info.frame_rate_hz = *file->frame_rate_hz;
     return std::make_unique<TumSequence>(std::move(info), std::move(*depth), std::move(*colour));
+}
+
+DamagedPictures check_colour_pictures(const fs::path& folder) {
+    DamagedPictures found;
+    const auto list = colour_list_of(folder);
+    if (!list) return found;  // whoever opens the folder is told
+    std::vector<std::uint8_t> bytes;
+    for (const auto& entry : *list) {
+        ++found.all;
+        const std::string name = entry.file.string();
+        const auto whole = read_file(entry.file, kMaxPictureBytes, bytes)
+                               .and_then([&] { return read_png_size(bytes, PngKind::rgb8, name); })
+                               .and_then([&](PngSize) { return check_png(bytes, name); });
+        if (whole) continue;
+        ++found.damaged;
+        if (!found.first) found.first = whole.error();
+    }
+    return found;
 }
 
 }  // namespace kinectlab

@@ -1,8 +1,11 @@
 #include "pipeline/simulate/actuated_pendulum.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <string>
+
+#include "pipeline/core/number_text.hpp"
 
 namespace kinectlab::simulate {
 namespace {
@@ -71,27 +74,21 @@ Result<void> ActuatedPendulum::apply(const Command& command) {
             move_arm(Motion::braking, Eigen::Vector2d::Zero(), kBrakeStiffness);
             return {};
         case Action::displace:
-            if (!(std::abs(command.angle_rad) <= kLargestAngle))
+            if (!(std::abs(command.value) <= kLargestAngle))
                 return fail(
                     ErrorCode::invalid_argument,
                     "angle_rad",
-                    "is " + std::to_string(command.angle_rad),
+                    "is " + number_text(command.value),
                     "give an angle from -1.047 to 1.047 rad (60 degrees)"
                 );
-            move_arm(
-                Motion::moving_to_angle,
-                command.angle_rad * Eigen::Vector2d::UnitX(),
-                kDisplaceStiffness
-            );
+            move_arm(Motion::moving, command.value * Eigen::Vector2d::UnitX(), kDisplaceStiffness);
             return {};
         case Action::hold:
             hold_here(Motion::held);
             return {};
         case Action::release:
-            if (motion_ == Motion::swinging || motion_ == Motion::at_rest) return {};
-            swing_.emplace(parameters_, state_);
-            motion_ = Motion::swinging;
-            motion_start_s_ = t_s_;
+            if (motion_ == Motion::free || motion_ == Motion::at_rest) return {};
+            let_go();
             return {};
     }
     return fail(
@@ -103,8 +100,8 @@ void ActuatedPendulum::advance_to(double t_s) {
     if (!(t_s > t_s_)) return;
     t_s_ = t_s;
     const double since_start = t_s_ - motion_start_s_;
-    if (motion_ == Motion::swinging) state_ = swing_->at(since_start);
-    if (motion_ == Motion::moving_to_angle || motion_ == Motion::braking) {
+    if (motion_ == Motion::free) state_ = swing_->at(since_start);
+    if (motion_ == Motion::moving || motion_ == Motion::braking) {
         const bool arrived = since_start * arm_.stiffness >= kArrived;
         state_ = arm_.at(since_start);
         if (arrived) {
@@ -114,13 +111,48 @@ void ActuatedPendulum::advance_to(double t_s) {
     }
 }
 
-Truth ActuatedPendulum::truth() const {
-    return {
-        t_s_,
-        motion_,
-        polar_of(state_.n).angle,
-        pivot_lab_ + parameters_.length_m * state_.n,
-        parameters_.length_m * state_.n_dot};
+double ActuatedPendulum::value() const {
+    return std::copysign(polar_of(state_.n).angle, state_.n.x());
+}
+
+std::vector<Body> ActuatedPendulum::bodies() const {
+    Body bob{"bob", Sphere{parameters_.bob_radius_m}};
+    bob.p_lab = pivot_lab_ + parameters_.length_m * state_.n;
+    bob.v_lab = parameters_.length_m * state_.n_dot;
+    bob.w_lab = state_.n.cross(state_.n_dot);
+    bob.q_lab_body.setFromTwoVectors(-Eigen::Vector3d::UnitZ(), state_.n);
+    return {bob};
+}
+
+std::vector<Wire> ActuatedPendulum::wires() const {
+    return {{pivot_lab_, pivot_lab_ + parameters_.length_m * state_.n}};
+}
+
+Furniture ActuatedPendulum::furniture() const {
+    return {true, pivot_lab_.z(), {}};
+}
+
+/// Where the bob leaves free what it hides at rest: its centre two and a half radii to the side.
+std::optional<double> ActuatedPendulum::aside(double value) const {
+    const double sine = 2.5 * parameters_.bob_radius_m / parameters_.length_m;
+    const double angle = std::min(std::asin(std::min(sine, 1.0)), std::numbers::pi / 6.0);
+    if (angle <= std::abs(value)) return std::nullopt;
+    return std::copysign(angle, value);
+}
+
+double ActuatedPendulum::usual_value() const {
+    return std::numbers::pi / 18.0;
+}
+
+void ActuatedPendulum::let_go() {
+    if (parameters_.sideways_m_s != 0.0) {
+        const Eigen::Vector3d y = Eigen::Vector3d::UnitY();
+        const Eigen::Vector3d across = (y - y.dot(state_.n) * state_.n).normalized();
+        state_.n_dot += parameters_.sideways_m_s / parameters_.length_m * across;
+    }
+    swing_.emplace(parameters_, state_);
+    motion_ = Motion::free;
+    motion_start_s_ = t_s_;
 }
 
 void ActuatedPendulum::move_arm(Motion motion, const Eigen::Vector2d& target, double stiffness) {

@@ -2,48 +2,30 @@
 
 #include <optional>
 
+#include "pipeline/simulate/apparatus.hpp"
 #include "pipeline/simulate/pendulum.hpp"
 
 namespace kinectlab::simulate {
 
-enum class Motion { at_rest, moving_to_angle, held, swinging, braking };
-
-enum class Action {
-    stop,      ///< brake the bob until it hangs at rest
-    displace,  ///< bring the bob to an angle in the x-z plane, and hold it there
-    hold,      ///< switch the electromagnet on where the bob is
-    release,   ///< switch the electromagnet off
-};
-
-struct Command {
-    Action action = Action::stop;
-    double angle_rad = 0.0;  ///< displace: positive towards +x, at most ±60°
-};
-
-/// The pendulum as it truly is at one time.
-struct Truth {
-    double t_s = 0.0;  ///< since the rig was switched on
-    Motion motion = Motion::at_rest;
-    double angle_rad = 0.0;  ///< between string and vertical, never negative
-    Eigen::Vector3d p_lab = Eigen::Vector3d::Zero();  ///< bob's centre, m
-    Eigen::Vector3d v_lab = Eigen::Vector3d::Zero();  ///< m/s
-};
-
-/// A pendulum with an arm that brings the bob somewhere and an electromagnet that holds it.
-/// A value: copies go on independently.
-class ActuatedPendulum {
+/// A pendulum with an arm that brings the bob somewhere and an electromagnet that holds it. Value:
+/// the angle between string and vertical in the x-z plane, rad, positive towards +x, at most ±60°.
+/// Stopped it hangs at rest in view, so it is held aside while the scene is learned.
+/// Copies go on independently.
+class ActuatedPendulum final : public Apparatus {
 public:
     /// `pivot_lab` is where the string hangs. The parameters have passed check().
     ActuatedPendulum(const PendulumParameters& parameters, const Eigen::Vector3d& pivot_lab);
 
-    /// Takes effect at the time of the last advance_to(). A release of a bob that hangs at rest, or
-    /// that swings already, changes nothing. An angle beyond ±60° is refused.
-    [[nodiscard]] Result<void> apply(const Command& command);
-
-    /// Times before the last one are ignored.
-    void advance_to(double t_s);
-
-    [[nodiscard]] Truth truth() const;
+    [[nodiscard]] Result<void> apply(const Command& command) override;
+    void advance_to(double t_s) override;
+    [[nodiscard]] double t_s() const override { return t_s_; }
+    [[nodiscard]] Motion motion() const override { return motion_; }
+    [[nodiscard]] double value() const override;
+    [[nodiscard]] std::vector<Body> bodies() const override;
+    [[nodiscard]] std::vector<Wire> wires() const override;
+    [[nodiscard]] Furniture furniture() const override;
+    [[nodiscard]] std::optional<double> aside(double value) const override;
+    [[nodiscard]] double usual_value() const override;
 
 private:
     /// The arm's path as a rotation vector of the string, critically damped towards its target.
@@ -57,6 +39,7 @@ private:
 
     void move_arm(Motion motion, const Eigen::Vector2d& target, double stiffness);
     void hold_here(Motion motion);
+    void let_go();
 
     PendulumParameters parameters_;
     Eigen::Vector3d pivot_lab_;

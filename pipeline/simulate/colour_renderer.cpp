@@ -3,71 +3,15 @@
 #include <algorithm>
 #include <cmath>
 
+#include "pipeline/simulate/room_picture.hpp"
 #include "pipeline/simulate/shading.hpp"
 
 namespace kinectlab::simulate {
 namespace {
 
-constexpr float kNoise = 1.7F;      ///< counts of 255
-constexpr float kContrast = 0.05F;  ///< between samples; above it a pixel takes more
-
-/// One camera on one room.
-struct View {
-    const Room& room;
-    const Pinhole& camera;
-    const Eigen::Isometry3d& T_lab_colour;
-
-    [[nodiscard]] Radiance sample(double u, double v) const {
-        const Eigen::Vector3d eye = T_lab_colour.translation();
-        const Eigen::Vector3d ray = T_lab_colour.linear() * camera.ray(u, v);
-        const Hit hit = room.cast(eye, ray);
-        if (hit.material == Material::none) return Radiance::Zero();
-        const double place_in_picture = 16.0 * (v * camera.width + u);
-        const auto grain = static_cast<std::uint64_t>(std::llround(place_in_picture));
-        return shade_room(room, hit, eye + hit.t * ray, eye, grain).cwiseMin(1.0F);
-    }
-
-    /// Mean of 4x4 samples.
-    [[nodiscard]] Radiance fine_pixel(int u, int v) const {
-        Radiance sum = Radiance::Zero();
-        for (int i = 0; i < 16; ++i)
-            sum += sample(u + (i % 4 - 1.5) / 4.0, v + (i / 4 - 1.5) / 4.0);
-        return sum / 16.0F;
-    }
-};
-
-/// Two samples a pixel on its diagonal, which meet any line half a pixel wide; sixteen where these
-/// differ from each other or from a neighbour's.
-std::vector<Radiance> sample_room(const View& view) {
-    const auto width = static_cast<std::size_t>(view.camera.width);
-    const std::size_t pixels = width * static_cast<std::size_t>(view.camera.height);
-    const auto column = [width](std::size_t i) {
-        return static_cast<int>(i % width);
-    };
-    const auto row = [width](std::size_t i) {
-        return static_cast<int>(i / width);
-    };
-    std::vector<Radiance> mean(pixels);
-    std::vector<bool> fine(pixels);
-    const auto differ = [](const Radiance& a, const Radiance& b) {
-        return (a - b).cwiseAbs().maxCoeff() > kContrast;
-    };
-    for (std::size_t i = 0; i < pixels; ++i) {
-        const Radiance upper = view.sample(column(i) - 0.25, row(i) - 0.25);
-        const Radiance lower = view.sample(column(i) + 0.25, row(i) + 0.25);
-        mean[i] = 0.5F * (upper + lower);
-        fine[i] = differ(upper, lower);
-    }
-    for (std::size_t i = 0; i < pixels; ++i) {
-        for (const std::size_t next : {i + 1, i + width}) {
-            if (next >= pixels || (next == i + 1 && column(next) == 0)) continue;
-            if (differ(mean[i], mean[next])) fine[i] = fine[next] = true;
-        }
-    }
-    for (std::size_t i = 0; i < pixels; ++i)
-        if (fine[i]) mean[i] = view.fine_pixel(column(i), row(i));
-    return mean;
-}
+constexpr double kBallGloss = 1.0;
+constexpr double kBoxGloss = 0.2;
+constexpr float kNoise = 1.7F;  ///< counts of 255
 
 /// Bounds of a level square's picture, cut to the image; empty if it is not all in front.
 PixelRect picture_of_square(
@@ -100,23 +44,23 @@ PixelRect picture_of_square(
 ColourRenderer::ColourRenderer(
     const Room& room, const Pinhole& camera, const Eigen::Isometry3d& T_lab_colour
 )
-    : camera_(camera), T_lab_colour_(T_lab_colour) {
-    room_.reserve(static_cast<std::size_t>(camera.width) * camera.height * 3);
-    for (const Radiance& pixel : sample_room({room, camera, T_lab_colour}))
-        for (const float channel : pixel)
-            room_.push_back(to_srgb(channel));
+    : camera_(camera), T_lab_colour_(T_lab_colour), has_table_(room.has_table()) {
+    room_ = picture_of_room(room, camera, T_lab_colour);
     now_ = room_;
 }
 
 void ColourRenderer::render(
-    const Bob& bob, const FrameRandom& random, bool noisy, std::vector<std::uint8_t>& rgb
+    const MovingParts& moving, const FrameRandom& random, bool noisy, std::vector<std::uint8_t>& rgb
 ) {
     for (const PixelRect& rect : drawn_)
         restore(rect);
     drawn_.clear();
-    draw_shadow(bob);
-    draw_string(bob);
-    draw_bob(bob);
+    if (has_table_)
+        for (const Body& body : moving.bodies)
+            draw_shadow(body.p_lab, ball_radius_of(body.shape));
+    for (const Wire& wire : moving.wires)
+        draw_string(wire);
+    draw_bodies(moving.bodies);
     rgb.resize(now_.size());
     if (!noisy) {
         std::copy(now_.begin(), now_.end(), rgb.begin());
@@ -156,14 +100,13 @@ void ColourRenderer::blend(int u, int v, const Eigen::Vector3f& linear, float sh
 }
 
 /// The shadow falls on the table top; where it would miss it, the floor is out of sight or far.
-void ColourRenderer::draw_shadow(const Bob& bob) {
-    const Eigen::Vector3d from_lamp = bob.centre_lab - lamp_centre();
-    const double below = bob.centre_lab.z() - room::kTableTop;
+void ColourRenderer::draw_shadow(const Eigen::Vector3d& centre, double radius) {
+    const Eigen::Vector3d from_lamp = centre - lamp_centre();
+    const double below = centre.z() - room::kTableTop;
     if (below <= 0.0 || from_lamp.z() >= 0.0) return;
-    const Eigen::Vector3d middle = bob.centre_lab - below / from_lamp.z() * from_lamp;
+    const Eigen::Vector3d middle = centre - below / from_lamp.z() * from_lamp;
     const double penumbra = kLampHalfSize * below / -from_lamp.z();
-    const double reach =
-        2.5 * bob.radius_m + 1.3 * penumbra + (middle - bob.centre_lab).head<2>().norm();
+    const double reach = 2.5 * radius + 1.3 * penumbra + (middle - centre).head<2>().norm();
     const PixelRect rect = picture_of_square(camera_, T_lab_colour_.inverse(), middle, reach);
     const Eigen::Vector3d& eye = T_lab_colour_.translation();
     PixelRect drawn{rect.right, rect.bottom, rect.left, rect.top};
@@ -174,7 +117,7 @@ void ColourRenderer::draw_shadow(const Bob& bob) {
             const Eigen::Vector3d p = eye + (room::kTableTop - eye.z()) / ray.z() * ray;
             if (std::abs(p.x()) > room::kTableHalfX || std::abs(p.y()) > room::kTableHalfY)
                 continue;
-            const float left = light_left_by(bob, p);
+            const float left = light_left_by(centre, radius, p);
             std::uint8_t* pixel =
                 now_.data() + (static_cast<std::ptrdiff_t>(v) * camera_.width + u) * 3;
             for (int i = 0; i < 3; ++i)
@@ -189,10 +132,10 @@ void ColourRenderer::draw_shadow(const Bob& bob) {
     if (!drawn.empty()) drawn_.push_back(drawn);
 }
 
-void ColourRenderer::draw_string(const Bob& bob) {
+void ColourRenderer::draw_string(const Wire& wire) {
     const Eigen::Isometry3d T_colour_lab = T_lab_colour_.inverse();
-    const Eigen::Vector3d from = T_colour_lab * bob.pivot_lab;
-    const Eigen::Vector3d to = T_colour_lab * bob.centre_lab;
+    const Eigen::Vector3d from = T_colour_lab * wire.from_lab;
+    const Eigen::Vector3d to = T_colour_lab * wire.to_lab;
     if (from.z() < 0.05 || to.z() < 0.05) return;
     const Eigen::Vector2d top = camera_.project(from);
     const Eigen::Vector2d bottom = camera_.project(to);
@@ -201,7 +144,7 @@ void ColourRenderer::draw_string(const Bob& bob) {
     const double lean = std::sqrt(1.0 + slope * slope);
     const int first = std::max(0, static_cast<int>(std::ceil(top.y())));
     const int last = std::min(camera_.height - 1, static_cast<int>(std::floor(bottom.y())));
-    const Radiance colour = albedo(Material::string, bob.centre_lab, Eigen::Vector3d::UnitZ());
+    const Radiance colour = albedo(Material::string, wire.to_lab, Eigen::Vector3d::UnitZ());
     for (int v = first; v <= last; ++v) {
         const double share = (v - top.y()) / (bottom.y() - top.y());
         const double inverse_z = std::lerp(1.0 / from.z(), 1.0 / to.z(), share);
@@ -219,10 +162,32 @@ void ColourRenderer::draw_string(const Bob& bob) {
     }
 }
 
-void ColourRenderer::draw_bob(const Bob& bob) {
+/// Far ones first, so that near ones hide them.
+void ColourRenderer::draw_bodies(const std::vector<Body>& bodies) {
+    const Eigen::Isometry3d T_colour_lab = T_lab_colour_.inverse();
+    std::vector<const Body*> order;
+    for (const Body& body : bodies)
+        order.push_back(&body);
     const Eigen::Vector3d& eye = T_lab_colour_.translation();
-    const Eigen::Vector3d centre = T_lab_colour_.inverse() * bob.centre_lab;
-    const PixelRect rect = picture_of_sphere(camera_, centre, bob.radius_m);
+    std::sort(order.begin(), order.end(), [&eye](const Body* a, const Body* b) {
+        return (a->p_lab - eye).squaredNorm() > (b->p_lab - eye).squaredNorm();
+    });
+    for (const Body* body : order) {
+        const PixelRect rect = picture_of(camera_, body->shape, T_cam_body_of(T_colour_lab, *body));
+        if (rect.empty()) continue;
+        if (std::holds_alternative<Cuboid>(body->shape))
+            draw_box(*body, rect);
+        else
+            draw_sphere(*body, rect);
+        drawn_.push_back(rect);
+    }
+}
+
+void ColourRenderer::draw_sphere(const Body& body, const PixelRect& rect) {
+    const double radius = std::get<Sphere>(body.shape).radius_m;
+    const Eigen::Vector3d& eye = T_lab_colour_.translation();
+    const Eigen::Vector3d centre = T_lab_colour_.inverse() * body.p_lab;
+    const Eigen::Matrix3d R_body_lab = body.q_lab_body.toRotationMatrix().transpose();
     for (int v = rect.top; v < rect.bottom; ++v) {
         for (int u = rect.left; u < rect.right; ++u) {
             const Eigen::Vector3d ray = camera_.ray(u, v);
@@ -230,16 +195,49 @@ void ColourRenderer::draw_bob(const Bob& bob) {
             const double depth = ray.dot(centre) / rr;
             const Eigen::Vector3d nearest = depth * ray;
             const double off = (nearest - centre).norm();
-            const double inside_px = (bob.radius_m - off) * camera_.fx / depth;
+            const double inside_px = (radius - off) * camera_.fx / depth;
             if (inside_px <= -0.5) continue;
-            const double chord = std::sqrt(std::max(0.0, bob.radius_m * bob.radius_m - off * off));
+            const double chord = std::sqrt(std::max(0.0, radius * radius - off * off));
             const Eigen::Vector3d point = nearest - chord / std::sqrt(rr) * ray;
             const Eigen::Vector3d normal = T_lab_colour_.linear() * (point - centre).normalized();
-            const Radiance colour = shade_bob(bob.centre_lab + bob.radius_m * normal, normal, eye);
+            const Eigen::Vector3d normal_body = R_body_lab * normal;
+            const Radiance paint = paint_of(body.material, radius * normal_body, normal_body);
+            const Radiance colour =
+                shade_body(paint, kBallGloss, body.p_lab + radius * normal, normal, eye);
             blend(u, v, colour.cwiseMin(1.0F), static_cast<float>(std::min(1.0, inside_px + 0.5)));
         }
     }
-    if (!rect.empty()) drawn_.push_back(rect);
+}
+
+/// Mean of 2x2 samples; those beside the box leave what is behind it.
+void ColourRenderer::draw_box(const Body& body, const PixelRect& rect) {
+    const Eigen::Vector3d half = 0.5 * std::get<Cuboid>(body.shape).size_m;
+    const Eigen::Vector3d& eye = T_lab_colour_.translation();
+    const Eigen::Matrix3d R_lab_body = body.q_lab_body.toRotationMatrix();
+    const Eigen::Vector3d eye_body = R_lab_body.transpose() * (eye - body.p_lab);
+    const Eigen::Matrix3d R_body_colour = R_lab_body.transpose() * T_lab_colour_.linear();
+    for (int v = rect.top; v < rect.bottom; ++v) {
+        for (int u = rect.left; u < rect.right; ++u) {
+            Radiance sum = Radiance::Zero();
+            int covered = 0;
+            for (int i = 0; i < 4; ++i) {
+                const Eigen::Vector3d ray =
+                    R_body_colour * camera_.ray(u + (i % 2 - 0.5) / 2.0, v + (i / 2 - 0.5) / 2.0);
+                const auto entry = enter_box(-half, half, eye_body, ray);
+                if (!entry) continue;
+                const Eigen::Vector3d normal = entry->sign * Eigen::Vector3d::Unit(entry->axis);
+                const Eigen::Vector3d p = eye_body + entry->t * ray;
+                const Radiance paint = paint_of(body.material, p, normal);
+                sum += shade_body(
+                    paint, kBoxGloss, body.p_lab + R_lab_body * p, R_lab_body * normal, eye
+                );
+                ++covered;
+            }
+            if (covered == 0) continue;
+            const auto count = static_cast<float>(covered);
+            blend(u, v, Radiance(sum / count).cwiseMin(1.0F), 0.25F * count);
+        }
+    }
 }
 
 }  // namespace kinectlab::simulate

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 namespace kinectlab::simulate {
@@ -34,7 +35,9 @@ bool meets_string(
            (depth * ray - point).squaredNorm() < room::kStringRadius * room::kStringRadius;
 }
 
-}  // namespace
+int cut_to(double value, int limit) {
+    return static_cast<int>(std::clamp(value, 0.0, static_cast<double>(limit)));
+}
 
 PixelRect picture_of_sphere(const Pinhole& camera, const Eigen::Vector3d& centre, double radius) {
     const double nearest = centre.z() - radius;
@@ -44,14 +47,51 @@ PixelRect picture_of_sphere(const Pinhole& camera, const Eigen::Vector3d& centre
     const double lean = std::hypot(centre.x(), centre.y()) / centre.z();
     const double reach_u = camera.fx * radius * (1.0 + lean) / nearest + 2.0;
     const double reach_v = camera.fy * radius * (1.0 + lean) / nearest + 2.0;
-    const auto cut = [](double value, int limit) {
-        return static_cast<int>(std::clamp(value, 0.0, static_cast<double>(limit)));
-    };
     return {
-        cut(std::floor(middle.x() - reach_u), camera.width),
-        cut(std::floor(middle.y() - reach_v), camera.height),
-        cut(std::ceil(middle.x() + reach_u), camera.width),
-        cut(std::ceil(middle.y() + reach_v), camera.height)};
+        cut_to(std::floor(middle.x() - reach_u), camera.width),
+        cut_to(std::floor(middle.y() - reach_v), camera.height),
+        cut_to(std::ceil(middle.x() + reach_u), camera.width),
+        cut_to(std::ceil(middle.y() + reach_v), camera.height)};
+}
+
+/// A box's picture is the hull of its corners' pictures.
+PixelRect picture_of_box(
+    const Pinhole& camera, const Eigen::Vector3d& size, const Eigen::Isometry3d& T_cam_body
+) {
+    Eigen::Array2d low = Eigen::Array2d::Constant(std::numeric_limits<double>::infinity());
+    Eigen::Array2d high = -low;
+    for (int corner = 0; corner < 8; ++corner) {
+        const Eigen::Array3d side(
+            corner & 1 ? 0.5 : -0.5, corner & 2 ? 0.5 : -0.5, corner & 4 ? 0.5 : -0.5
+        );
+        const Eigen::Vector3d p = T_cam_body * Eigen::Vector3d(side * size.array());
+        if (p.z() < 0.05) return {};
+        const Eigen::Array2d uv = camera.project(p).array();
+        low = low.min(uv);
+        high = high.max(uv);
+    }
+    return {
+        cut_to(std::floor(low.x()) - 1.0, camera.width),
+        cut_to(std::floor(low.y()) - 1.0, camera.height),
+        cut_to(std::ceil(high.x()) + 2.0, camera.width),
+        cut_to(std::ceil(high.y()) + 2.0, camera.height)};
+}
+
+}  // namespace
+
+PixelRect picture_of(
+    const Pinhole& camera, const Shape& shape, const Eigen::Isometry3d& T_cam_body
+) {
+    if (const auto* box = std::get_if<Cuboid>(&shape))
+        return picture_of_box(camera, box->size_m, T_cam_body);
+    return picture_of_sphere(camera, T_cam_body.translation(), std::get<Sphere>(shape).radius_m);
+}
+
+Eigen::Isometry3d T_cam_body_of(const Eigen::Isometry3d& T_cam_lab, const Body& body) {
+    Eigen::Isometry3d T_cam_body = Eigen::Isometry3d::Identity();
+    T_cam_body.linear() = T_cam_lab.linear() * body.q_lab_body.toRotationMatrix();
+    T_cam_body.translation() = T_cam_lab * body.p_lab;
+    return T_cam_body;
 }
 
 DepthCaster::DepthCaster(
@@ -74,12 +114,22 @@ DepthCaster::DepthCaster(
     now_ = room_;
 }
 
-const ExactDepth& DepthCaster::cast(const Bob& bob) {
-    const Eigen::Vector3d centre_cam = T_cam_lab_ * bob.centre_lab;
-    clear(now_.bob);
-    now_.bob = picture_of_sphere(camera_, centre_cam, bob.radius_m);
-    draw_bob(centre_cam, bob.radius_m);
-    find_string(T_cam_lab_ * bob.pivot_lab, centre_cam);
+const ExactDepth& DepthCaster::cast(const MovingParts& moving) {
+    for (const PixelRect& rect : now_.bodies)
+        clear(rect);
+    now_.bodies.clear();
+    for (const Body& body : moving.bodies) {
+        const Eigen::Isometry3d T_cam_body = T_cam_body_of(T_cam_lab_, body);
+        const PixelRect rect = picture_of(camera_, body.shape, T_cam_body);
+        now_.bodies.push_back(rect);
+        if (const auto* box = std::get_if<Cuboid>(&body.shape))
+            draw_box(rect, box->size_m, T_cam_body);
+        else
+            draw_sphere(rect, T_cam_body.translation(), std::get<Sphere>(body.shape).radius_m);
+    }
+    now_.string.clear();
+    for (const Wire& wire : moving.wires)
+        find_string(T_cam_lab_ * wire.from_lab, T_cam_lab_ * wire.to_lab);
     return now_;
 }
 
@@ -92,27 +142,45 @@ void DepthCaster::clear(const PixelRect& rect) {
     }
 }
 
-void DepthCaster::draw_bob(const Eigen::Vector3d& centre, double radius) {
+void DepthCaster::draw(int u, int v, double depth, double facing) {
+    const auto i = static_cast<std::size_t>(v) * camera_.width + u;
+    if (1.0 / depth <= now_.inverse_depth[i]) return;
+    now_.inverse_depth[i] = static_cast<float>(1.0 / depth);
+    now_.grazing[i] = grazing_of(facing);
+}
+
+void DepthCaster::draw_sphere(const PixelRect& rect, const Eigen::Vector3d& centre, double radius) {
     const double beyond = centre.squaredNorm() - radius * radius;
-    for (int v = now_.bob.top; v < now_.bob.bottom; ++v) {
-        for (int u = now_.bob.left; u < now_.bob.right; ++u) {
+    for (int v = rect.top; v < rect.bottom; ++v) {
+        for (int u = rect.left; u < rect.right; ++u) {
             const Eigen::Vector3d ray = camera_.ray(u, v);
             const double rr = ray.squaredNorm();
             const double towards = ray.dot(centre);
             const double inside = towards * towards - rr * beyond;
             if (inside <= 0.0) continue;
             const double depth = (towards - std::sqrt(inside)) / rr;
-            const auto i = static_cast<std::size_t>(v) * camera_.width + u;
-            if (1.0 / depth <= now_.inverse_depth[i]) continue;
-            now_.inverse_depth[i] = static_cast<float>(1.0 / depth);
             const Eigen::Vector3d normal = (depth * ray - centre) / radius;
-            now_.grazing[i] = grazing_of(-normal.dot(ray) / std::sqrt(rr));
+            draw(u, v, depth, -normal.dot(ray) / std::sqrt(rr));
+        }
+    }
+}
+
+void DepthCaster::draw_box(
+    const PixelRect& rect, const Eigen::Vector3d& size, const Eigen::Isometry3d& T_cam_body
+) {
+    const Eigen::Isometry3d T_body_cam = T_cam_body.inverse();
+    const Eigen::Vector3d half = 0.5 * size;
+    for (int v = rect.top; v < rect.bottom; ++v) {
+        for (int u = rect.left; u < rect.right; ++u) {
+            const Eigen::Vector3d ray = T_body_cam.linear() * camera_.ray(u, v);
+            const auto entry = enter_box(-half, half, T_body_cam.translation(), ray);
+            if (!entry || entry->t <= 0.0) continue;
+            draw(u, v, entry->t, std::abs(ray[entry->axis]) / ray.norm());
         }
     }
 }
 
 void DepthCaster::find_string(const Eigen::Vector3d& from, const Eigen::Vector3d& to) {
-    now_.string.clear();
     if (from.z() < 0.05 || to.z() < 0.05) return;
     const double length = (to - from).norm();
     const Eigen::Vector3d along = (to - from) / length;

@@ -13,12 +13,15 @@ struct PixelRect {
     [[nodiscard]] bool empty() const { return left >= right || top >= bottom; }
 };
 
-/// A sphere's picture lies inside; cut to the image. Empty if it is not in front of the camera.
-[[nodiscard]] PixelRect picture_of_sphere(
-    const Pinhole& camera, const Eigen::Vector3d& centre_cam, double radius_m
+/// A body's picture lies inside; cut to the image. Empty if it is not all in front of the camera.
+[[nodiscard]] PixelRect picture_of(
+    const Pinhole& camera, const Shape& shape, const Eigen::Isometry3d& T_cam_body
 );
 
-/// One pixel that the string covers.
+/// Where the body stands in a camera's frame.
+[[nodiscard]] Eigen::Isometry3d T_cam_body_of(const Eigen::Isometry3d& T_cam_lab, const Body& body);
+
+/// One pixel that a string covers.
 struct StringPixel {
     int u, v;
     float inverse_depth;
@@ -28,7 +31,7 @@ struct StringPixel {
 struct ExactDepth {
     std::vector<float> inverse_depth;   ///< 1/Z in 1/m, in float exact to a micrometre; 0 = nothing
     std::vector<std::uint8_t> grazing;  ///< 0..255 = 0..90° between viewing ray and surface normal
-    PixelRect bob;                      ///< what the bob's rows and columns are
+    std::vector<PixelRect> bodies;      ///< where it may differ from the empty room
     std::vector<StringPixel> string;    ///< in front of the room, not drawn into inverse_depth
 };
 
@@ -37,14 +40,18 @@ class DepthCaster {
 public:
     DepthCaster(const Room& room, const Pinhole& camera, const Eigen::Isometry3d& T_lab_cam);
 
-    /// The room with this bob in it; valid until the next call.
-    [[nodiscard]] const ExactDepth& cast(const Bob& bob);
+    /// The room with these bodies in it; valid until the next call.
+    [[nodiscard]] const ExactDepth& cast(const MovingParts& moving);
 
     [[nodiscard]] const ExactDepth& empty_room() const { return room_; }
 
 private:
     void clear(const PixelRect& rect);
-    void draw_bob(const Eigen::Vector3d& centre_cam, double radius_m);
+    void draw_sphere(const PixelRect& rect, const Eigen::Vector3d& centre_cam, double radius_m);
+    void draw_box(
+        const PixelRect& rect, const Eigen::Vector3d& size_m, const Eigen::Isometry3d& T_cam_body
+    );
+    void draw(int u, int v, double depth, double facing);
     void find_string(const Eigen::Vector3d& from_cam, const Eigen::Vector3d& to_cam);
 
     Pinhole camera_;

@@ -149,9 +149,10 @@ void DepthNoise::apply_khoshelham(
 void DepthNoise::apply_kinect(
     const ExactDepth& exact, const FrameRandom& random, std::vector<std::uint16_t>& depth_mm
 ) {
-    look_at(exact, last_bob_.top, last_bob_.bottom);
-    look_at(exact, exact.bob.top, exact.bob.bottom);
-    last_bob_ = exact.bob;
+    for (const auto& bodies : {last_bodies_, exact.bodies})
+        for (const PixelRect& rect : bodies)
+            look_at(exact, rect.top, rect.bottom);
+    last_bodies_ = exact.bodies;
     for (int v = 0; v < height_; ++v)
         kinect_row(random, v, depth_mm.data() + static_cast<std::size_t>(v) * width_);
     kinect_string(exact, random, depth_mm);

@@ -60,7 +60,7 @@ private:
     std::vector<std::int32_t> aside_;    ///< sideways looks, ready as index offsets
     std::vector<float> smooth_;          ///< the Gaussian table after the horizontal pyramid
     std::vector<float> looked_, noise_;  ///< of one row
-    PixelRect last_bob_;
+    std::vector<PixelRect> last_bodies_;
 };
 
 }  // namespace kinectlab::simulate

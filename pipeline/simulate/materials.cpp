@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "pipeline/simulate/random.hpp"
@@ -95,6 +96,26 @@ Radiance cabinet(const Eigen::Vector3d& p, const Eigen::Vector3d& normal) {
     return mixed(paint, Radiance(0.15F, 0.15F, 0.15F), seam);
 }
 
+/// Six hues, and in each squares of a centimetre with tones of their own.
+Radiance box_paint(const Eigen::Vector3d& p, const Eigen::Vector3d& normal) {
+    static const std::array<Radiance, 6> hues = {
+        Radiance(0.70F, 0.10F, 0.08F),
+        Radiance(0.08F, 0.45F, 0.50F),
+        Radiance(0.12F, 0.50F, 0.10F),
+        Radiance(0.55F, 0.12F, 0.50F),
+        Radiance(0.75F, 0.60F, 0.08F),
+        Radiance(0.12F, 0.16F, 0.65F)};
+    Eigen::Index axis = 0;
+    normal.cwiseAbs().maxCoeff(&axis);
+    const auto face = static_cast<std::size_t>(2 * axis + (normal[axis] < 0.0 ? 1 : 0));
+    constexpr double kSquare = 0.01;
+    const double u = std::floor(p[(axis + 1) % 3] / kSquare);
+    const double v = std::floor(p[(axis + 2) % 3] / kSquare);
+    const double tone =
+        lattice(static_cast<std::int64_t>(u), static_cast<std::int64_t>(v) + 1000 * (axis + 1));
+    return static_cast<float>(0.35 + 0.65 * tone) * hues[face];
+}
+
 }  // namespace
 
 Radiance albedo(Material material, const Eigen::Vector3d& p, const Eigen::Vector3d& normal) {
@@ -115,12 +136,33 @@ Radiance albedo(Material material, const Eigen::Vector3d& p, const Eigen::Vector
             return {0.30F, 0.31F, 0.33F};
         case Material::string:
             return {0.05F, 0.05F, 0.055F};
+        case Material::plank:
+            return wood(p.x(), p.y() + 0.15, 0.30);
+        case Material::sand: {
+            const double speckle = value_noise(p.x() * 120.0, p.y() * 120.0 + 40.0 * p.z());
+            return static_cast<float>(0.8 + 0.4 * speckle) * Radiance(0.42F, 0.34F, 0.22F);
+        }
+        default:
+            return Radiance::Zero();
+    }
+}
+
+Radiance paint_of(Material material, const Eigen::Vector3d& p, const Eigen::Vector3d& normal_body) {
+    switch (material) {
         case Material::bob:
             return {0.66F, 0.022F, 0.035F};
-        case Material::none:
-            break;
+        case Material::blue_ball:
+            return {0.025F, 0.10F, 0.60F};
+        case Material::yellow_ball:
+            return {0.75F, 0.52F, 0.03F};
+        case Material::striped_ball:
+            return std::sin(4.0 * std::atan2(p.x(), p.z())) > 0.0 ? Radiance(0.70F, 0.20F, 0.02F)
+                                                                  : Radiance(0.25F, 0.07F, 0.01F);
+        case Material::painted_box:
+            return box_paint(p, normal_body);
+        default:
+            return Radiance::Zero();
     }
-    return Radiance::Zero();
 }
 
 }  // namespace kinectlab::simulate

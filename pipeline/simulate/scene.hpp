@@ -1,11 +1,13 @@
 #pragma once
 
-#include <array>
 #include <limits>
+#include <optional>
+#include <vector>
 
 #include <Eigen/Geometry>
 
 #include "pipeline/core/camera.hpp"
+#include "pipeline/simulate/body.hpp"
 
 namespace kinectlab::simulate {
 
@@ -28,8 +30,6 @@ constexpr double kTallestFurniture = 1.02;
 constexpr double kStringRadius = 0.001;
 }  // namespace room
 
-enum class Material { none, wall, floor, table, table_leg, cabinet, mount, bob, string };
-
 struct Hit {
     double t =
         std::numeric_limits<double>::infinity();  ///< along the ray, in lengths of its direction
@@ -42,9 +42,26 @@ struct Box {
     Material material;
 };
 
+/// A box that stands still, its edges along its own axes, its centre at its origin.
+struct Block {
+    Eigen::Isometry3d T_lab_block = Eigen::Isometry3d::Identity();
+    Eigen::Vector3d size_m = Eigen::Vector3d::Constant(0.1);
+    Material material = Material::mount;
+};
+
+/// What an apparatus makes of the room.
+struct Furniture {
+    bool table = true;
+    std::optional<double> mount_from_m;  ///< a rod comes from the ceiling down to this height
+    std::vector<Block> blocks;
+};
+
 /// Everything that stands still.
 class Room {
 public:
+    explicit Room(const Furniture& furniture);
+
+    /// With the table, below a rod that ends at this height.
     explicit Room(double pivot_height_m);
 
     /// Nearest surface in front of `origin`; Material::none if there is none.
@@ -53,16 +70,27 @@ public:
     /// True if furniture stands between the two points; the thin mount does not count.
     [[nodiscard]] bool hides(const Eigen::Vector3d& from, const Eigen::Vector3d& to) const;
 
+    [[nodiscard]] bool has_table() const { return has_table_; }
+
 private:
-    std::array<Box, 8> boxes_;
+    bool has_table_;
+    std::vector<Box> boxes_;
+    std::vector<Block> blocks_;
 };
 
-/// The moving part.
-struct Bob {
-    Eigen::Vector3d centre_lab = Eigen::Vector3d::Zero();
-    double radius_m = 0.05;
-    Eigen::Vector3d pivot_lab = Eigen::Vector3d::Zero();
+/// Where a ray enters a box whose edges lie along the axes: in lengths of its direction, and
+/// through which face; also behind the origin. None if it passes by.
+struct Entry {
+    double t;
+    int axis;
+    double sign;  ///< of the face's outward normal along the axis
 };
+[[nodiscard]] std::optional<Entry> enter_box(
+    const Eigen::Vector3d& low,
+    const Eigen::Vector3d& high,
+    const Eigen::Vector3d& origin,
+    const Eigen::Vector3d& direction
+);
 
 /// Pivot of a pendulum of this length, so that the bob rests at kBobRestHeight.
 [[nodiscard]] Eigen::Vector3d pivot_of(double length_m);

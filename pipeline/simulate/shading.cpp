@@ -32,11 +32,12 @@ double lamp_share(const Room& room, const Eigen::Vector3d& p, std::uint64_t grai
 }
 
 /// Corners and the room under the table are darker.
-double openness(const Hit& hit, const Eigen::Vector3d& p) {
+double openness(const Room& room, const Hit& hit, const Eigen::Vector3d& p) {
     double open = 1.0;
     if (hit.material == Material::floor)
         open *= 1.0 - 0.5 * std::exp(-(room::kWallY - p.y()) / 0.12);
     if (hit.material == Material::wall) open *= 1.0 - 0.35 * std::exp(-p.z() / 0.10);
+    if (!room.has_table()) return open;
     const double under_x = room::kTableHalfX + 0.1 - std::abs(p.x());
     const double under_y = room::kTableHalfY + 0.15 - std::abs(p.y());
     if (p.z() < room::kTableTop - 0.045 && under_x > 0.0 && under_y > 0.0)
@@ -76,20 +77,24 @@ Radiance shade_room(
     const Irradiance light = irradiance(p, hit.normal);
     const double share = light.direct.x() > 0.0F ? lamp_share(room, p, grain) : 0.0;
     const Radiance arriving = static_cast<float>(share) * light.direct +
-                              static_cast<float>(openness(hit, p)) * light.ambient;
+                              static_cast<float>(openness(room, hit, p)) * light.ambient;
     Radiance leaving = albedo(hit.material, p, hit.normal).cwiseProduct(arriving);
     if (hit.material == Material::table || hit.material == Material::floor) {
         // A coat of varnish mirrors the wall where one looks at it flatly.
         const double cosine = hit.normal.dot((eye - p).normalized());
         const double mirror = hit.material == Material::table ? fresnel(cosine, 0.04) : 0.03;
-        leaving +=
-            static_cast<float>(0.55 * mirror * openness(hit, p)) * Radiance(0.50F, 0.55F, 0.57F);
+        leaving += static_cast<float>(0.55 * mirror * openness(room, hit, p)) *
+                   Radiance(0.50F, 0.55F, 0.57F);
     }
     return kExposure * leaving;
 }
 
-Radiance shade_bob(
-    const Eigen::Vector3d& p, const Eigen::Vector3d& normal, const Eigen::Vector3d& eye
+Radiance shade_body(
+    const Radiance& paint,
+    double gloss,
+    const Eigen::Vector3d& p,
+    const Eigen::Vector3d& normal,
+    const Eigen::Vector3d& eye
 ) {
     const Irradiance light = irradiance(p, normal);
     const Eigen::Vector3d view = (eye - p).normalized();
@@ -104,26 +109,25 @@ Radiance shade_bob(
         const double off = std::max(std::abs(on_lamp.x()), std::abs(on_lamp.y())) / kLampHalfSize;
         around += static_cast<float>(14.0 * std::clamp(1.8 - off, 0.0, 1.0)) * Radiance::Ones();
     }
-    return kExposure *
-           (albedo(Material::bob, p, normal).cwiseProduct(light.direct + light.ambient) +
-            static_cast<float>(mirror) * around);
+    return kExposure * (paint.cwiseProduct(light.direct + light.ambient) +
+                        static_cast<float>(gloss * mirror) * around);
 }
 
-float light_left_by(const Bob& bob, const Eigen::Vector3d& p) {
+float light_left_by(const Eigen::Vector3d& centre, double radius, const Eigen::Vector3d& p) {
     const Eigen::Vector3d up = Eigen::Vector3d::UnitZ();
     const Irradiance light = irradiance(p, up);
     const Eigen::Vector3d to_lamp = lamp_centre() - p;
-    const Eigen::Vector3d to_bob = bob.centre_lab - p;
+    const Eigen::Vector3d to_bob = centre - p;
     const double along = to_bob.dot(to_lamp) / to_lamp.norm();
     double hidden = 0.0;
     if (along > 0.0 && along < to_lamp.norm()) {
         const double off = std::sqrt(std::max(0.0, to_bob.squaredNorm() - along * along));
         const double penumbra = kLampHalfSize * along / (to_lamp.norm() - along);
-        const double t = std::clamp((bob.radius_m + penumbra - off) / (2.0 * penumbra), 0.0, 1.0);
-        const double deepest = std::min(1.0, bob.radius_m * bob.radius_m / (penumbra * penumbra));
+        const double t = std::clamp((radius + penumbra - off) / (2.0 * penumbra), 0.0, 1.0);
+        const double deepest = std::min(1.0, radius * radius / (penumbra * penumbra));
         hidden = deepest * t * t * (3.0 - 2.0 * t);
     }
-    const double near = bob.radius_m * bob.radius_m / to_bob.squaredNorm();
+    const double near = radius * radius / to_bob.squaredNorm();
     const double closed = near * std::max(0.0, to_bob.z() / to_bob.norm());
     const float direct = light.direct.sum();
     const float ambient = light.ambient.sum();

@@ -37,13 +37,24 @@ constexpr double kLampHalfSize = 0.28;
     std::uint64_t grain
 );
 
-/// A glossy red sphere.
-[[nodiscard]] Radiance shade_bob(
-    const Eigen::Vector3d& p_lab, const Eigen::Vector3d& normal, const Eigen::Vector3d& eye
+/// The paint of a moving body at a place of its own frame, on the side that its normal tells.
+[[nodiscard]] Radiance paint_of(
+    Material material, const Eigen::Vector3d& p_body, const Eigen::Vector3d& normal_body
 );
 
-/// What the bob's shadow leaves of the light on an upward surface, 0 to 1.
-[[nodiscard]] float light_left_by(const Bob& bob, const Eigen::Vector3d& p_lab);
+/// A painted surface under varnish; gloss 1 mirrors as a polished ball does, 0 not at all.
+[[nodiscard]] Radiance shade_body(
+    const Radiance& paint,
+    double gloss,
+    const Eigen::Vector3d& p_lab,
+    const Eigen::Vector3d& normal,
+    const Eigen::Vector3d& eye
+);
+
+/// What a ball's shadow leaves of the light on an upward surface, 0 to 1.
+[[nodiscard]] float light_left_by(
+    const Eigen::Vector3d& centre_lab, double radius_m, const Eigen::Vector3d& p_lab
+);
 
 [[nodiscard]] std::uint8_t to_srgb(float linear);
 [[nodiscard]] float from_srgb(std::uint8_t value);

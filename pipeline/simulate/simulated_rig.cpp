@@ -18,7 +18,7 @@ Result<void> check(const CameraPlacement& placement) {
     return fail(
         ErrorCode::invalid_argument,
         "camera",
-        "stands where it cannot see the pendulum",
+        "stands where it cannot see the apparatus",
         "give a distance from 0.6 to 4 m, a height from 0.3 to 2.5 m, a tilt of at most 0.7 rad"
     );
 }
@@ -33,13 +33,12 @@ RgbdCamera camera_with(NoiseModel noise) {
 }  // namespace
 
 struct SimulatedRig::State {
-    explicit State(const RigSettings& given)
+    State(const RigSettings& given, std::unique_ptr<Apparatus> made)
         : settings(given),
           camera(camera_with(given.noise)),
           T_lab_cam(T_lab_cam_of(given.camera)),
-          pivot_lab(pivot_of(given.pendulum.length_m)),
-          pendulum(given.pendulum, pivot_lab),
-          room(pivot_lab.z()),
+          apparatus(std::move(made)),
+          room(apparatus->furniture()),
           caster(room, camera.depth, T_lab_cam),
           noise(given.noise, camera.depth, caster.empty_room()) {
         if (settings.with_colour) turn_on_colour();
@@ -52,8 +51,7 @@ struct SimulatedRig::State {
     RigSettings settings;
     RgbdCamera camera;
     Eigen::Isometry3d T_lab_cam;
-    Eigen::Vector3d pivot_lab;
-    ActuatedPendulum pendulum;
+    std::unique_ptr<Apparatus> apparatus;
     Room room;
     DepthCaster caster;
     DepthNoise noise;
@@ -61,9 +59,10 @@ struct SimulatedRig::State {
 };
 
 Result<SimulatedRig> SimulatedRig::create(const RigSettings& settings) {
-    if (auto ok = simulate::check(settings.pendulum); !ok) return tl::unexpected(ok.error());
+    auto apparatus = make_apparatus(settings.apparatus);
+    if (!apparatus) return tl::unexpected(apparatus.error());
     if (auto ok = check(settings.camera); !ok) return tl::unexpected(ok.error());
-    return SimulatedRig(std::make_unique<State>(settings));
+    return SimulatedRig(std::make_unique<State>(settings, std::move(*apparatus)));
 }
 
 SimulatedRig::SimulatedRig(std::unique_ptr<State> state) : state_(std::move(state)) {}
@@ -72,11 +71,11 @@ SimulatedRig& SimulatedRig::operator=(SimulatedRig&&) noexcept = default;
 SimulatedRig::~SimulatedRig() = default;
 
 Result<void> SimulatedRig::apply(const Command& command) {
-    return state_->pendulum.apply(command);
+    return state_->apparatus->apply(command);
 }
 
 void SimulatedRig::advance_to(double t_s) {
-    state_->pendulum.advance_to(t_s);
+    state_->apparatus->advance_to(t_s);
 }
 
 void SimulatedRig::turn_on_colour() {
@@ -85,21 +84,24 @@ void SimulatedRig::turn_on_colour() {
 
 void SimulatedRig::render(RgbdFrame& frame) {
     State& s = *state_;
-    const Truth now = s.pendulum.truth();
-    const Bob bob{now.p_lab, s.settings.pendulum.bob_radius_m, s.pivot_lab};
-    frame.index = static_cast<std::uint64_t>(std::llround(now.t_s * kFrameRateHz));
-    frame.t = s.settings.start + from_seconds(now.t_s);
+    const MovingParts moving{s.apparatus->bodies(), s.apparatus->wires()};
+    const double t_s = s.apparatus->t_s();
+    frame.index = static_cast<std::uint64_t>(std::llround(t_s * kFrameRateHz));
+    frame.t = s.settings.start + from_seconds(t_s);
     const FrameRandom random(s.settings.seed, frame.index);
-    s.noise.apply(s.caster.cast(bob), random, frame.depth);
+    s.noise.apply(s.caster.cast(moving), random, frame.depth);
     frame.t_colour = s.colour ? frame.t : 0;
     if (s.colour)
-        s.colour->render(bob, random, s.settings.noise != NoiseModel::none, frame.rgb);
+        s.colour->render(moving, random, s.settings.noise != NoiseModel::none, frame.rgb);
     else
         frame.rgb.clear();
 }
 
 Truth SimulatedRig::truth() const {
-    return state_->pendulum.truth();
+    return state_->apparatus->truth();
+}
+const Apparatus& SimulatedRig::apparatus() const {
+    return *state_->apparatus;
 }
 const RgbdCamera& SimulatedRig::camera() const {
     return state_->camera;

@@ -6,14 +6,14 @@
 #include "pipeline/core/camera.hpp"
 #include "pipeline/core/error.hpp"
 #include "pipeline/core/frame.hpp"
-#include "pipeline/simulate/actuated_pendulum.hpp"
+#include "pipeline/simulate/apparatus.hpp"
 #include "pipeline/simulate/noise_model.hpp"
 #include "pipeline/simulate/scene.hpp"
 
 namespace kinectlab::simulate {
 
 struct RigSettings {
-    PendulumParameters pendulum;
+    ApparatusSettings apparatus;
     NoiseModel noise = NoiseModel::kinect;
     std::uint64_t seed =
         1;  ///< the same seed gives the same frames, whichever of them are rendered
@@ -24,7 +24,7 @@ struct RigSettings {
 
 constexpr double kFrameRateHz = 30.0;
 
-/// A Foucault pendulum, its laboratory and the Kinect that watches it. Time is what advance_to()
+/// An apparatus, its laboratory and the Kinect that watches it. Time is what advance_to()
 /// says, never a clock. Not thread-safe: one thread owns a rig.
 class SimulatedRig {
 public:
@@ -48,6 +48,7 @@ public:
     void render(RgbdFrame& frame);
 
     [[nodiscard]] Truth truth() const;
+    [[nodiscard]] const Apparatus& apparatus() const;
     [[nodiscard]] const RgbdCamera& camera() const;
     [[nodiscard]] const Eigen::Isometry3d& T_lab_cam() const;  ///< of the depth camera
 

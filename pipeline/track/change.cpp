@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "pipeline/core/number_text.hpp"
 #include "pipeline/track/identities.hpp"
 
 namespace kinectlab {
@@ -63,7 +64,7 @@ Result<void> check(const ChangeTrackSettings& settings, const std::string& path)
     return fail(
         ErrorCode::invalid_argument,
         path + ".memory_s",
-        "is " + std::to_string(settings.memory_s),
+        "is " + number_text(settings.memory_s),
         "give seconds from 0 to 60, e.g. 2"
     );
 }

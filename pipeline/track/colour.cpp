@@ -4,20 +4,32 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <utility>
 
+#include "pipeline/core/number_text.hpp"
 #include "pipeline/features/colour_constancy.hpp"
 #include "pipeline/features/two_cameras.hpp"
 #include "pipeline/track/colour_bounds.hpp"
+#include "pipeline/track/colour_model.hpp"
+#include "pipeline/track/first_look.hpp"
+#include "pipeline/track/patch_place.hpp"
 #include "pipeline/track/picture_box.hpp"
 #include "pipeline/track/surface_pieces.hpp"
+#include "pipeline/track/surface_vote.hpp"
 
 namespace kinectlab {
 namespace {
 
 constexpr std::size_t kFewestPixels = 60;  // fewer are noise
 constexpr TimeNs kMemory = kNsPerSecond;   // a place older than this says nothing
-constexpr double kShrunkTo = 0.25;         // of the pixels before: perhaps another thing
-constexpr double kFastest_m_s = 4.0;       // what moves faster is another thing
+constexpr double kShrunkTo = 0.25;         // of the area before: perhaps another thing
+constexpr double kGrownTo = 3.0;
+constexpr double kSlack_m = 0.1;
+constexpr double kFastest_m_s = 4.0;        // what moves faster is another thing
+constexpr double kMostAround = 0.25;        // of the surroundings may have the thing's colours
+constexpr double kFewestInBox = 0.1;        // of a box must be the thing
+constexpr double kHalfVoteOfBounds = 0.45;  // given bounds: nearly all inside passes, little else
+constexpr double kNearest_m = 0.3;          // nearer than any sensor of the family reads
 
 class ColourTracker : public Tracker {
 public:
@@ -25,10 +37,14 @@ public:
         : camera_(camera),
           cameras_(camera),
           pieces_(camera),
+          vote_(camera),
+          first_look_(camera),
           colour_index_(static_cast<std::size_t>(camera.depth.width * camera.depth.height)),
-          mask_(colour_index_.size()) {
+          mask_(colour_index_.size()),
+          votes_(colour_index_.size()),
+          patch_(colour_index_.size()) {
         for (auto& object : objects) {
-            Target target;
+            Target target(camera);
             target.object = std::move(object);
             if (target.object.settings.bounds) target.table.emplace(*target.object.settings.bounds);
             targets_.push_back(std::move(target));
@@ -36,7 +52,9 @@ public:
     }
 
     void track(
-        const RgbdFrame& frame, std::span<const MovedPixels>, std::vector<TrackSample>& samples
+        const RgbdFrame& frame,
+        std::span<const MovedPixels> moved,
+        std::vector<TrackSample>& samples
     ) override {
         const bool has_colour =
             frame.rgb.size() ==
@@ -46,33 +64,44 @@ public:
             TrackSample sample;
             sample.t = frame.t;
             sample.object = target.object.index;
-            if (has_colour) find(target, frame, sample);
+            sample.quality.why_lost =
+                has_colour ? find(target, frame, moved, sample) : "there is no colour picture";
+            if (sample.status == TrackStatus::lost) target.patch.lose();
             samples.push_back(sample);
         }
     }
 
+    std::optional<Error> take_fault() override { return std::exchange(fault_, std::nullopt); }
+
     void reset() override {
         constancy_.reset();
         first_t_.reset();
+        fault_.reset();
         for (auto& target : targets_) {
             if (!target.object.settings.bounds) target.table.reset();
             target.tried = false;
-            target.seen = false;
+            target.seen_at.reset();
+            target.area_m2 = 0.0;
             target.axes_at_first.reset();
+            target.patch.forget();
         }
     }
 
 private:
     struct Target {
+        explicit Target(const RgbdCamera& camera) : patch(camera) {}
+
         TrackedObject<ColourSettings> object;
         std::optional<ColourTable> table;
+        double half_vote = 255.0 * kHalfVoteOfBounds;
         bool tried = false;  // to learn the colour
-        bool seen = false;
-        TimeNs seen_at = 0;
-        std::size_t pixels = 0;
+        std::optional<TimeNs> seen_at;
+        double area_m2 = 0.0;
+        PixelArea area;  // where it was seen, px
         Eigen::Vector3d place_cam = Eigen::Vector3d::Zero();
         std::optional<Eigen::Matrix3d> axes_at_first;
         Eigen::Matrix3d axes_cam = Eigen::Matrix3d::Identity();
+        PatchPlace patch;
     };
 
     /// What all objects need of a frame: its gains, and the colour pixel of every depth pixel.
@@ -81,6 +110,7 @@ private:
         if (!constancy_.has_reference()) constancy_.learn(frame.rgb, camera_.colour.width);
         gains_ = constancy_.gains(frame.rgb);
         entry_ = ColourTable::entry(gains_);
+        vote_.look(frame.depth);
         const int width = camera_.depth.width;
         for (int v = 0; v < camera_.depth.height; ++v) {
             const auto row = static_cast<std::size_t>(v * width);
@@ -88,44 +118,130 @@ private:
         }
     }
 
-    void find(Target& target, const RgbdFrame& frame, TrackSample& sample) {
+    /// Why it is lost; empty if it is tracked.
+    std::string_view find(
+        Target& target,
+        const RgbdFrame& frame,
+        std::span<const MovedPixels> moved,
+        TrackSample& sample
+    ) {
         const ColourSettings& settings = target.object.settings;
-        bool in_box_only = false;
         if (!target.table) {
-            const bool now = frame.t - *first_t_ >= from_seconds(settings.learn_at_s);
-            if (target.tried || !now || !settings.box) return;
+            if (target.tried) return "its colour could not be learned";
+            if (frame.t - *first_t_ < from_seconds(settings.learn_at_s))
+                return "its colour is not learned yet";
             target.tried = true;
-            const auto bounds = learn_bounds(
-                frame.rgb, camera_.colour.width, camera_.colour.height, *settings.box, gains_
-            );
-            if (!bounds) return;
-            target.table.emplace(*bounds);
-            in_box_only = true;
+            if (auto learned = learn(target, frame, moved); !learned) {
+                target.table.reset();
+                if (!fault_) fault_ = std::move(learned.error());
+                return "its colour could not be learned";
+            }
         }
-        for (std::size_t i = 0; i < mask_.size(); ++i) {
-            const std::int32_t at = colour_index_[i];
-            mask_[i] = at >= 0 && target.table->passes(entry_, frame.rgb.data() + 3 * at) ? 1 : 0;
-        }
-        const auto pieces = pieces_.cut(frame.depth, mask_, kFewestPixels);
-        const auto best =
-            in_box_only ? most_in_box(pieces, *settings.box) : likely_piece(target, frame, pieces);
-        if (best.empty()) return;
+        const bool remembered = target.seen_at && frame.t - *target.seen_at <= kMemory;
+        const auto pieces =
+            vote_for(target, frame, remembered ? reach(target, frame.t) : whole_picture());
+        if (pieces.empty()) return "its colour is not seen where it could be";
+        const MovedPixels best = likely_piece(target, frame, pieces, remembered);
+        if (best.empty())
+            return "what has its colour is too far from its last place, or of another size";
         report(target, frame, best, sample);
+        return {};
     }
 
-    MovedPixels most_in_box(std::span<const MovedPixels> pieces, const PictureBox& box) const {
+    Result<void> learn(Target& target, const RgbdFrame& frame, std::span<const MovedPixels> moved) {
+        const PictureBox& place = *target.object.settings.box;
+        const std::string field = "objects[" + std::to_string(target.object.index) + "]." +
+                                  (is_click(place) ? "click" : "box");
+        if (auto ok = first_look_.take(frame, colour_index_, gains_, moved, place, field); !ok)
+            return ok;
+        auto model = learn_colours(first_look_.inside(), first_look_.outside());
+        if (!model || model->share_outside > kMostAround * model->share_inside)
+            return fail(
+                ErrorCode::invalid_argument,
+                field,
+                "shows nothing but colours, or greys, that stand around it too",
+                "choose a part with a colour of its own, or the methods texture, sift3d or "
+                "surface_patch"
+            );
+        target.table.emplace(std::move(model->table));
+        target.half_vote = 255.0 * 0.5 * (model->share_inside + model->share_outside);
+
+        // Of what has its colours now, the piece that the place shows most of.
+        auto at_place = patch_of(first_look_.pixels());
+        MovedPixels best = most_of(vote_for(target, frame, whole_picture()), at_place);
+        if (!best.empty()) {
+            std::size_t passing = 0;
+            for (const auto pixel : best)
+                passing += passes(target, frame, pixel) ? 1 : 0;
+            const double share = static_cast<double>(passing) / static_cast<double>(best.size());
+            target.half_vote = 255.0 * 0.5 * (share + model->share_outside);
+            best = most_of(vote_for(target, frame, whole_picture()), at_place);
+        }
+        const auto seen = static_cast<double>(best.size());
+        if (seen < kFewestInBox * static_cast<double>(first_look_.pixels().size()))
+            return fail(
+                ErrorCode::invalid_argument,
+                field,
+                "shows no patch of one colour, only " + std::to_string(best.size()) +
+                    " depth pixels together",
+                "at least " + std::to_string(kFewestPixels) +
+                    " are needed: choose a larger patch, or the methods texture or sift3d"
+            );
+        const auto glance = target.patch.glance(frame, best);
+        target.area_m2 = glance.area_m2;
+        target.place_cam = glance.centroid_cam;
+        target.seen_at = frame.t;
+        target.area = around(best);
+        return {};
+    }
+
+    bool passes(const Target& target, const RgbdFrame& frame, std::size_t pixel) const {
+        const std::int32_t at = colour_index_[pixel];
+        return at >= 0 && target.table->passes(entry_, frame.rgb.data() + 3 * at);
+    }
+
+    /// Patches of its colours within an area of the picture.
+    std::span<const MovedPixels> vote_for(
+        const Target& target, const RgbdFrame& frame, const PixelArea& area
+    ) {
+        const int margin = vote_.half_window();
+        const PixelArea wider{
+            std::max(0, area.left - margin),
+            std::max(0, area.top - margin),
+            std::min(camera_.depth.width, area.right + margin),
+            std::min(camera_.depth.height, area.bottom + margin)};
+        for (int v = wider.top; v < wider.bottom; ++v)
+            for (int u = wider.left; u < wider.right; ++u) {
+                const auto i = static_cast<std::size_t>(v * camera_.depth.width + u);
+                mask_[i] = passes(target, frame, i) ? 1 : 0;
+            }
+        vote_.count(mask_, area, votes_);
+        std::fill(patch_.begin(), patch_.end(), std::uint8_t{0});
+        const auto least = static_cast<std::uint8_t>(std::max(1.0, 0.5 * target.half_vote));
+        for (int v = area.top; v < area.bottom; ++v)
+            for (int u = area.left; u < area.right; ++u) {
+                const auto i = static_cast<std::size_t>(v * camera_.depth.width + u);
+                patch_[i] = votes_[i] > least ? 1 : 0;
+            }
+        return pieces_.cut(frame.depth, patch_, kFewestPixels);
+    }
+
+    std::vector<std::uint8_t> patch_of(std::span<const std::uint32_t> pixels) const {
+        std::vector<std::uint8_t> patch(mask_.size());
+        for (const auto pixel : pixels)
+            patch[pixel] = 1;
+        return patch;
+    }
+
+    static MovedPixels most_of(
+        std::span<const MovedPixels> pieces, std::span<const std::uint8_t> place
+    ) {
         MovedPixels best;
-        std::size_t most = 0;
+        std::ptrdiff_t most = 0;
         for (const auto& piece : pieces) {
-            const auto inside = static_cast<std::size_t>(std::count_if(
-                piece.begin(),
-                piece.end(),
-                [&](std::uint32_t pixel) {
-                    const int u = colour_index_[pixel] % camera_.colour.width - box.left;
-                    const int v = colour_index_[pixel] / camera_.colour.width - box.top;
-                    return u >= 0 && v >= 0 && u < box.width && v < box.height;
-                }
-            ));
+            const auto inside = std::count_if(piece.begin(), piece.end(), [&](std::uint32_t pixel) {
+                return place[pixel] != 0;
+            });
             if (inside <= most) continue;
             most = inside;
             best = piece;
@@ -133,60 +249,98 @@ private:
         return best;
     }
 
-    /// Biggest where there is no place to hold against; else the nearest that can be the same.
-    MovedPixels likely_piece(
-        const Target& target, const RgbdFrame& frame, std::span<const MovedPixels> pieces
+    [[nodiscard]] PixelArea whole_picture() const {
+        return {0, 0, camera_.depth.width, camera_.depth.height};
+    }
+
+    [[nodiscard]] PixelArea around(MovedPixels pixels) const {
+        PixelArea area{camera_.depth.width, camera_.depth.height, 0, 0};
+        for (const auto pixel : pixels) {
+            const int u = static_cast<int>(pixel) % camera_.depth.width;
+            const int v = static_cast<int>(pixel) / camera_.depth.width;
+            area.left = std::min(area.left, u), area.right = std::max(area.right, u + 1);
+            area.top = std::min(area.top, v), area.bottom = std::max(area.bottom, v + 1);
+        }
+        return area;
+    }
+
+    static double farthest_m(const Target& target, TimeNs t) {
+        return kSlack_m + kFastest_m_s * to_seconds(t - *target.seen_at);
+    }
+
+    /// Where in the picture it can be by now.
+    [[nodiscard]] PixelArea reach(const Target& target, TimeNs t) const {
+        const double off = farthest_m(target, t);
+        const double z = std::max(kNearest_m, target.place_cam.z() - off);
+        const int wide = static_cast<int>(std::min(1e4, camera_.depth.fx * off / z));
+        const int high = static_cast<int>(std::min(1e4, camera_.depth.fy * off / z));
+        return {
+            std::max(0, target.area.left - wide),
+            std::max(0, target.area.top - high),
+            std::min(camera_.depth.width, target.area.right + wide),
+            std::min(camera_.depth.height, target.area.bottom + high)};
+    }
+
+    /// Where there is a place to hold against, the nearest that can be the same. Else the one
+    /// nearest in size; else the biggest.
+    [[nodiscard]] MovedPixels likely_piece(
+        const Target& target,
+        const RgbdFrame& frame,
+        std::span<const MovedPixels> pieces,
+        bool remembered
     ) const {
-        if (pieces.empty()) return {};
-        const TimeNs age = frame.t - target.seen_at;
-        if (!target.seen || age > kMemory) return pieces.front();
+        if (target.area_m2 <= 0.0) return pieces.front();
         MovedPixels best;
-        double nearest = 0.1 + kFastest_m_s * to_seconds(age);
+        double least = std::numeric_limits<double>::max();
         for (const auto& piece : pieces) {
-            if (static_cast<double>(piece.size()) < kShrunkTo * static_cast<double>(target.pixels))
-                break;  // sorted, so all others are smaller
-            const double off =
-                (surface_moments(frame.depth, piece, camera_).centroid_cam - target.place_cam)
-                    .norm();
-            if (off >= nearest) continue;
-            nearest = off;
+            const auto glance = target.patch.glance(frame, piece);
+            const double size = glance.area_m2 / target.area_m2;
+            if (size < kShrunkTo || size > kGrownTo) continue;
+            const double off = remembered ? (glance.centroid_cam - target.place_cam).norm()
+                                          : std::abs(std::log(size));
+            if (off >= least || (remembered && off >= farthest_m(target, frame.t))) continue;
+            least = off;
             best = piece;
         }
         return best;
     }
 
     void report(Target& target, const RgbdFrame& frame, MovedPixels piece, TrackSample& sample) {
-        const SurfaceMoments moments = surface_moments(frame.depth, piece, camera_);
-        target.seen = true;
+        const auto place = target.patch.measure(frame, piece, votes_, target.half_vote);
         target.seen_at = frame.t;
-        target.pixels = piece.size();
-        target.place_cam = moments.centroid_cam;
+        target.area_m2 = target.patch.glance(frame, piece).area_m2;
+        target.area = around(piece);
+        target.place_cam = place.centroid_cam;
         sample.status = TrackStatus::tracked;
-        sample.p_cam = moments.centroid_cam;
-        sample.covariance.topLeftCorner<3, 3>() = moments.centroid_covariance;
-        sample.quality.points = static_cast<int>(piece.size());
-        sample.quality.inlier_share = 1.0;
-        if (!moments.axes_known) return;
+        sample.p_cam = place.centroid_cam;
+        sample.covariance.topLeftCorner<3, 3>() = place.covariance;
+        sample.quality.points = place.points;
+        sample.quality.inlier_share =
+            static_cast<double>(place.points) / static_cast<double>(piece.size());
+        if (!place.axes_known) return;
         if (!target.axes_at_first) {
-            target.axes_at_first = moments.axes_cam;
-            target.axes_cam = moments.axes_cam;
+            target.axes_at_first = place.axes_cam;
+            target.axes_cam = place.axes_cam;
         }
-        target.axes_cam = nearest_signs(moments.axes_cam, target.axes_cam);
+        target.axes_cam = nearest_signs(place.axes_cam, target.axes_cam);
         sample.has_orientation = true;
         sample.q_cam_obj =
             Eigen::Quaterniond(target.axes_cam * target.axes_at_first->transpose()).normalized();
-        sample.covariance.bottomRightCorner<3, 3>() = moments.turn_covariance;
+        sample.covariance.bottomRightCorner<3, 3>() = place.turn_covariance;
     }
 
     RgbdCamera camera_;
     TwoCameras cameras_;
     SurfacePieces pieces_;
+    SurfaceVote vote_;
+    FirstLook first_look_;
     ColourConstancy constancy_;
     ColourConstancy::Gains gains_{1.0F, 1.0F, 1.0F};
     ColourTable::Entry entry_{};
     std::optional<TimeNs> first_t_;
+    std::optional<Error> fault_;
     std::vector<std::int32_t> colour_index_;
-    std::vector<std::uint8_t> mask_;
+    std::vector<std::uint8_t> mask_, votes_, patch_;  // a byte a pixel
     std::vector<Target> targets_;
 };
 
@@ -198,7 +352,7 @@ Result<void> check_range(
     return fail(
         ErrorCode::invalid_argument,
         field,
-        "is [" + std::to_string(low) + ", " + std::to_string(high) + "]",
+        "is [" + number_text(low) + ", " + number_text(high) + "]",
         std::string("give [lowest, highest] from 0 to ") + (most > 1.0 ? "360" : "1") +
             (may_wrap ? "; lowest > highest goes through red" : "")
     );

@@ -4,13 +4,13 @@
 
 namespace kinectlab {
 
-/// Method "colour": a pass-through filter in hue, saturation and value (the paper's III.C.2) over
-/// the whole depth picture; a point has the colour of the pixel where the colour camera sees it.
-/// The object is the connected piece of surface of that colour nearest to its last place, or the
-/// biggest. Its position is the centroid of the visible surface. Its orientation is the turn of
-/// the surface's principal axes since the first frame, told only where the three are clearly of
-/// different length: a ball's are not. A colour that cannot be learned (grey, nothing there) or is
-/// not seen is lost.
+/// Method "colour": a pass-through filter in hue, saturation and value (the paper's III.C.2); a
+/// point has the colour of the pixel where the colour camera sees it. The object is the patch of
+/// continuous surface on which enough of the pixels pass, nearest to its last place, else nearest
+/// in size, else the biggest. Its position is the centroid of the visible surface. Its orientation
+/// is the turn of the surface's principal axes since the first frame, told only where the three
+/// are clearly of different length: a ball's are not. A click or box whose colour cannot be learned
+/// is a fault; what is lost says why.
 ///
 /// Wandering brightness and white balance are taken out first, one gain for each channel by the
 /// median ratio of what stands still to the first frame.

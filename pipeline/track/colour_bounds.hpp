@@ -2,8 +2,7 @@
 
 #include <array>
 #include <cstdint>
-#include <optional>
-#include <span>
+#include <functional>
 #include <vector>
 
 #include "pipeline/features/colour_constancy.hpp"
@@ -14,21 +13,12 @@ namespace kinectlab {
 /// Whether a colour lies within bounds; hue wraps around at red.
 [[nodiscard]] bool passes(const ColourBounds& bounds, float r, float g, float b);
 
-/// The bounds of what a box shows: the hue that is most common in its inner half, weighted by
-/// saturation, less what surrounds the box; a click (at most 8 px wide) takes the pixels around it.
-/// Nothing where all is grey or black, which has no hue.
-[[nodiscard]] std::optional<ColourBounds> learn_bounds(
-    std::span<const std::uint8_t> rgb,
-    int width,
-    int height,
-    const PictureBox& box,
-    const ColourConstancy::Gains& gains
-);
-
-/// Bounds as a table over 64x64x64 colours: one look-up a pixel.
+/// Which colours pass as a table over 64x64x64 colours: one look-up a pixel.
 class ColourTable {
 public:
     explicit ColourTable(const ColourBounds& bounds);
+    /// `passes` is asked with red, green and blue, each 0 to 1.
+    explicit ColourTable(const std::function<bool(float, float, float)>& passes);
 
     /// How to enter the table for pictures that need these gains: the sum of three entries.
     using Entry = std::array<std::array<std::uint32_t, 256>, 3>;

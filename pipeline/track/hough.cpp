@@ -1,10 +1,10 @@
 #include "pipeline/track/hough.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstdint>
 #include <numbers>
-#include <unordered_map>
 
 #include <Eigen/Geometry>
 
@@ -54,19 +54,56 @@ struct Cell {
     int votes;
 };
 
-/// The cells with most votes.
-std::vector<Cell> peaks(const std::unordered_map<std::uint64_t, int>& votes, std::size_t most) {
-    std::vector<Cell> cells;
-    cells.reserve(votes.size());
-    for (const auto& [key, count] : votes)
-        cells.push_back({key, count});
-    const auto better = [](const Cell& a, const Cell& b) {
-        return a.votes != b.votes ? a.votes > b.votes : a.key < b.key;
+/// Votes by cell, in a table with open addresses: most of the time goes into casting them.
+class Votes {
+public:
+    /// Room for so many cells, all without votes.
+    void begin(std::size_t cells) { table_.assign(std::bit_ceil(2 * cells), Cell{kNoKey, 0}); }
+    void add(std::uint64_t key) {
+        const std::size_t mask = table_.size() - 1;
+        std::size_t at = (key * 0x9E3779B97F4A7C15U >> 32) & mask;
+        while (table_[at].key != key && table_[at].key != kNoKey)
+            at = (at + 1) & mask;
+        table_[at].key = key;
+        ++table_[at].votes;
+    }
+    /// The cells with most votes; none with fewer than three.
+    [[nodiscard]] std::vector<Cell> peaks(std::size_t most) const {
+        std::vector<Cell> cells;
+        for (const Cell& cell : table_)
+            if (cell.votes >= 3) cells.push_back(cell);
+        const auto better = [](const Cell& a, const Cell& b) {
+            return a.votes != b.votes ? a.votes > b.votes : a.key < b.key;
+        };
+        const auto end = cells.begin() + static_cast<std::ptrdiff_t>(std::min(most, cells.size()));
+        std::partial_sort(cells.begin(), end, cells.end(), better);
+        cells.erase(end, cells.end());
+        return cells;
+    }
+
+private:
+    static constexpr std::uint64_t kNoKey = ~std::uint64_t{0};
+    std::vector<Cell> table_;
+};
+
+/// A big ball finds as many points on a wall as a small one on itself, but far fewer of those that
+/// its own face would show: what counts is the support times the share of that face. The points are
+/// spread evenly over the picture, where the face covers (r/Z)² of some unit.
+void rank_balls(
+    const SurfacePoints& points,
+    const Tolerance& tolerance,
+    std::size_t most,
+    std::vector<ShapeCandidate>& best
+) {
+    rank(points, tolerance, best.size(), best);
+    const auto worth = [](const ShapeCandidate& one) {
+        const double size_seen = one.shape.size / std::max(0.1, one.shape.point.z());
+        return std::pow(one.support / size_seen, 2);
     };
-    const auto end = cells.begin() + static_cast<std::ptrdiff_t>(std::min(most, cells.size()));
-    std::partial_sort(cells.begin(), end, cells.end(), better);
-    cells.erase(end, cells.end());
-    return cells;
+    std::stable_sort(best.begin(), best.end(), [&](const auto& a, const auto& b) {
+        return worth(a) > worth(b);
+    });
+    if (best.size() > most) best.resize(most);
 }
 
 }  // namespace
@@ -140,11 +177,10 @@ void hough_spheres(
     const double ratio =
         limits.known ? 1.0 : std::pow(limits.most / limits.least, 1.0 / (kRadii - 1));
     double radius = first;
-    std::unordered_map<std::uint64_t, int> votes;
-    votes.reserve(4 * points.size);
+    Votes votes;
     for (int r = 0; r < radii; ++r, radius *= ratio) {
         const double cell_m = kCellOfRadius * radius;
-        votes.clear();
+        votes.begin(8 * points.size);
         for (std::size_t i = 0; i < points.size; ++i) {
             const OrientedPoint point = points.at(i);
             const Eigen::Vector3d centre = (point.p_cam - radius * point.normal) / cell_m;
@@ -156,10 +192,10 @@ void hough_spheres(
                                       ((corner >> axis) & 1) + (1 << 19);
                     key = key << 20 | (static_cast<std::uint64_t>(cell) & 0xFFFFF);
                 }
-                ++votes[key];
+                votes.add(key);
             }
         }
-        for (const Cell& cell : peaks(votes, 2 * most)) {
+        for (const Cell& cell : votes.peaks(2 * most)) {
             Eigen::Vector3d middle;
             for (int axis = 2, shift = 0; axis >= 0; --axis, shift += 20)
                 middle[axis] =
@@ -184,7 +220,7 @@ void hough_spheres(
                 best.push_back({{ShapeKind::sphere, centre, -Eigen::Vector3d::UnitZ(), radius}, 0});
         }
     }
-    rank(points, tolerance, most, best);
+    rank_balls(points, tolerance, most, best);
 }
 
 }  // namespace kinectlab

@@ -7,6 +7,8 @@
 
 #include <Eigen/Eigenvalues>
 
+#include "pipeline/core/number_text.hpp"
+
 namespace kinectlab {
 namespace {
 
@@ -169,11 +171,11 @@ Result<ObjectModel> make_object_model(const TriangleMesh& mesh, double metres_pe
     };
     if (mesh.vertices.empty()) return empty("has no points");
     if (!(std::isfinite(metres_per_unit) && metres_per_unit > 0.0))
-        return empty("is scaled by " + std::to_string(metres_per_unit));
+        return empty("is scaled by " + number_text(metres_per_unit));
     ObjectModel model;
     centre(model, mesh, metres_per_unit);
     if (!(model.radius_m > 1e-4 && model.radius_m < 1e6))
-        return empty("has a radius of " + std::to_string(model.radius_m) + " m");
+        return empty("has a radius of " + number_text(model.radius_m) + " m");
     if (mesh.is_cloud()) {
         if (mesh.vertices.size() < kFewestPoints)
             return empty("has only " + std::to_string(mesh.vertices.size()) + " points");

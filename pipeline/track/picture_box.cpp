@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "pipeline/core/number_text.hpp"
+
 namespace kinectlab {
 
 Result<void> check_box(const PictureBox& box, const Pinhole& picture, const std::string& field) {
@@ -27,7 +29,7 @@ Result<void> check_learn_at(double learn_at_s, const std::string& field) {
     return fail(
         ErrorCode::invalid_argument,
         field,
-        "is " + std::to_string(learn_at_s),
+        "is " + number_text(learn_at_s),
         "give seconds after the first frame, 0 to 86400"
     );
 }

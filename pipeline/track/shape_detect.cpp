@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "pipeline/track/hough.hpp"
+#include "pipeline/track/shape_whole.hpp"
 
 namespace kinectlab {
 namespace {
@@ -139,6 +140,14 @@ void SegmentShapes::near_pixels(const DisparityImage& image, const Shape& shape)
     }
 }
 
+/// Far away the noise is as large as a small ball, which then fits on any wall.
+bool SegmentShapes::is_flat(const DisparityImage& image, const ShapeFit& ball) {
+    const Eigen::Vector3d towards = -ball.shape.point.normalized();
+    const Eigen::Vector3d front = ball.shape.point + ball.shape.size * towards;
+    const ShapeCandidate face{{ShapeKind::plane, front, towards, 0.0}, 0};
+    return rival_.least_misfit(image, near_, {&face, 1}, 1.0) <= kSimplerCost * ball.cost + 0.01;
+}
+
 std::optional<ShapeFit> SegmentShapes::in_scene(
     const DisparityImage& image, const ShapeTarget& target
 ) {
@@ -154,7 +163,9 @@ std::optional<ShapeFit> SegmentShapes::in_scene(
     for (const auto& guess : guesses_) {
         near_pixels(image, guess.shape);
         auto fit = fitter_.fit(image, near_, guess.shape, target.limits.known.has_value());
-        if (!fit || !is_sound(*fit, target)) continue;
+        if (!fit || !is_sound(*fit, target) || !is_whole(*fit, image, camera_.depth, scale_))
+            continue;
+        if (target.kind == ShapeKind::sphere && is_flat(image, *fit)) continue;
         if (!best || fit->quality.points > best->quality.points) best = std::move(fit);
     }
     return best;

@@ -47,6 +47,7 @@ private:
     [[nodiscard]] bool is_sound(const ShapeFit& fit, const ShapeTarget& target) const;
     [[nodiscard]] bool is_its_kind(const DisparityImage& image, const ShapeFit& fit);
     [[nodiscard]] double best_cost(const DisparityImage& image, ShapeKind kind, double hopeless);
+    [[nodiscard]] bool is_flat(const DisparityImage& image, const ShapeFit& ball);
     void near_pixels(const DisparityImage& image, const Shape& shape);
 
     RgbdCamera camera_;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "pipeline/core/number_text.hpp"
 #include "pipeline/track/hough.hpp"
 #include "pipeline/track/shape_detect.hpp"
 #include "pipeline/track/shapes.hpp"
@@ -156,6 +157,11 @@ private:
         sample.p_cam = fit.shape.point;
         sample.covariance = fit.covariance;
         sample.quality = fit.quality;
+        if (fit.size_u > 0.0) {  // else it was known, or the shape has none
+            const bool cone = fit.shape.kind == ShapeKind::cone;
+            (cone ? sample.size.half_angle_rad : sample.size.radius_m) = fit.shape.size;
+            (cone ? sample.size.half_angle_u : sample.size.radius_u) = fit.size_u;
+        }
         if (fit.shape.kind != ShapeKind::sphere) {
             Eigen::Vector3d x = fresh ? Eigen::Vector3d(before.col(0)) : Eigen::Vector3d::UnitX();
             if (std::abs(x.dot(z)) > 0.95) x = z.unitOrthogonal();
@@ -253,7 +259,7 @@ Result<void> check(const ConeSettings& settings, const std::string& path) {
     return fail(
         ErrorCode::invalid_argument,
         path + ".half_angle_deg",
-        "is " + std::to_string(angle) + " rad",
+        "is " + number_text(angle) + " rad",
         "give 5° to 70° between the axis and the surface"
     );
 }

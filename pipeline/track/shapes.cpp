@@ -3,17 +3,23 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
+#include "pipeline/core/number_text.hpp"
 #include "pipeline/track/shape_borders.hpp"
 #include "pipeline/track/shape_grid.hpp"
+#include "pipeline/track/shape_pair.hpp"
 #include "pipeline/track/shape_pool.hpp"
 #include "pipeline/track/shape_search.hpp"
+#include "pipeline/track/shape_whole.hpp"
 
 namespace kinectlab {
 namespace {
 
 constexpr int kHalfWindow = 5;  // px, of the normals' windows
+constexpr int kHalfSteepWindow = 3;
 constexpr int kMostDraws = 20000;
+constexpr int kMostGrowths = 4;
 constexpr int kGrowCells = 2;  // normals near an edge are of both sides
 constexpr std::size_t kSearchPoints = 256;
 constexpr int kSearchTries = 96;
@@ -58,6 +64,7 @@ struct ShapeDetector::State {
           scale(camera_),
           image(camera_),
           fitter(camera_),
+          pair(camera_),
           borders(camera_),
           grid(camera_.depth),
           pool(rules_of(settings_)),
@@ -77,32 +84,74 @@ struct ShapeDetector::State {
         return static_cast<double>(component.size()) >= min_cells();
     }
 
-    /// The simplest kind that explains the component's pixels nearly as well as any other.
-    std::optional<ShapeFit> best_kind(const Shape& shape) {
+    /// Some of the component's pixels, on which fits are compared.
+    void choose_compared() {
         grid.collect_pixels(image, taken, 0, pixels);
         compared.clear();
         const std::size_t stride = 1 + pixels.size() / kComparePixels;
         for (std::size_t i = 0; i < pixels.size(); i += stride)
             compared.push_back(pixels[i]);
+    }
+
+    /// A round candidate through few points is rough, and a part of a can may look like a bent
+    /// face: refined on what it explains, it explains more. Its component is the grid's then.
+    Shape grow(Shape shape) {
+        std::size_t size = grid.find_component(shape, points, kRough).size();
+        for (int i = 0; i < kMostGrowths && shape.kind != ShapeKind::plane; ++i) {
+            choose_compared();
+            const auto fit = sound_fit(shape);
+            const auto before = std::exchange(shape, fit ? fit->shape : shape);
+            const std::size_t grown = grid.find_component(shape, points, kRough).size();
+            if (grown < size) shape = before;
+            if (grown <= size) break;
+            size = grown;
+        }
+        (void)grid.find_component(shape, points, kRough);
+        return shape;
+    }
+
+    /// The simplest kind that explains the component's pixels nearly as well as any other, among
+    /// those that stand there as a whole. A bulge that a ball fits but that is none may yet be a
+    /// flat face; a richer kind it is only if that explains it better than the ball does.
+    std::optional<ShapeFit> best_kind(const Shape& shape) {
+        choose_compared();
         grid.collect_points(points, kSearchPoints, own);
         std::array<std::optional<ShapeFit>, kKinds.size()> fits;
-        double least = 1.0;
+        double least = 1.0, least_simpler = 1.0;
         for (const auto kind : kKinds) {
-            const auto k = static_cast<std::size_t>(kind);
-            if (!settings.kinds[k]) continue;
-            if (kind == shape.kind) fits[k] = sound_fit(shape);
-            search_shape(kind, own, limits_of(settings, kind), kRough, {kSearchTries, 2}, guesses);
-            for (const auto& guess : guesses) {
-                auto fit = sound_fit(guess.shape);
-                if (fit && (!fits[k] || fit->cost < fits[k]->cost)) fits[k] = std::move(fit);
-            }
-            if (!fits[k]) continue;
-            if (kind == ShapeKind::plane && fits[k]->cost < kPlainCost) return fits[k];
-            least = std::min(least, fits[k]->cost);
+            auto& best = fits[static_cast<std::size_t>(kind)];
+            best = best_of_kind(kind, shape);
+            if (!best) continue;
+            if (kind == ShapeKind::plane && best->cost < kPlainCost) return best;
+            const double simpler =
+                std::exchange(least_simpler, std::min(least_simpler, best->cost));
+            if (best->cost < simpler && is_whole(*best, image, camera.depth, scale) &&
+                !is_edge(*best))
+                least = std::min(least, best->cost);
+            else
+                best.reset();
         }
         for (const auto& fit : fits)
             if (fit && fit->cost <= kSimplerCost * least + 0.01) return fit;
         return std::nullopt;
+    }
+
+    /// Whether two faces explain the compared pixels better than a round shape does.
+    [[nodiscard]] bool is_edge(const ShapeFit& fit) {
+        return fit.shape.kind != ShapeKind::plane && settings.kinds[0] &&
+               pair.cost(image, compared, own) + 0.01 < fit.cost;
+    }
+
+    /// What explains the compared pixels best, whole or not.
+    std::optional<ShapeFit> best_of_kind(ShapeKind kind, const Shape& shape) {
+        if (!settings.kinds[static_cast<std::size_t>(kind)]) return std::nullopt;
+        auto best = kind == shape.kind ? sound_fit(shape) : std::nullopt;
+        search_shape(kind, own, limits_of(settings, kind), kRough, {kSearchTries, 2}, guesses);
+        for (const auto& guess : guesses) {
+            auto fit = sound_fit(guess.shape);
+            if (fit && (!best || fit->cost < best->cost)) best = std::move(fit);
+        }
+        return best;
     }
 
     std::optional<ShapeFit> sound_fit(const Shape& guess) {
@@ -121,13 +170,13 @@ struct ShapeDetector::State {
     /// Whether a candidate became a shape of the result.
     bool extract(const Shape& candidate) {
         if (!is_big(grid.find_component(candidate, points, kRough))) return false;
-        auto fit = best_kind(candidate);
+        auto fit = best_kind(grow(candidate));
         if (!fit) return false;
         if (!is_big(grid.find_component(fit->shape, points, kFine))) return false;
         grid.collect_pixels(image, taken, kGrowCells, pixels);
         const Shape guess = fit->shape;
-        fit = fitter.fit(image, pixels, guess, false);
-        if (!fit || !is_sound(*fit)) return false;
+        fit = fitter.fit(image, pixels, guess, false, FitStart::refined);
+        if (!fit || !is_sound(*fit) || !is_whole(*fit, image, camera.depth, scale)) return false;
 
         if (result.size() <= results) result.emplace_back();
         SceneShape& found = result[results];
@@ -161,14 +210,32 @@ struct ShapeDetector::State {
         pool.look_again(points);
     }
 
+    /// In random order. A face seen so steeply that it falls too far within a window has points
+    /// of a smaller one.
+    void find_points() {
+        find_surface_points(image, camera, order, kHalfWindow, rest);
+        grid.index(rest);
+        steep.clear();
+        for (const auto pixel : order)
+            if (grid.point_in(grid.cell_of(pixel)) < 0) steep.push_back(pixel);
+        find_surface_points(image, camera, steep, kHalfSteepWindow, own);
+        points.clear();
+        std::size_t i = 0, j = 0;
+        for (const auto pixel : order) {
+            if (i < rest.size && rest.pixel[i] == pixel) points.copy(rest, i++);
+            if (j < own.size && own.pixel[j] == pixel) points.copy(own, j++);
+        }
+        points.pad();
+        grid.index(points);
+    }
+
     void detect(std::span<const std::uint16_t> depth) {
         results = 0;
         const auto size = static_cast<std::size_t>(camera.depth.width) *
                           static_cast<std::size_t>(camera.depth.height);
         if (depth.size() != size) return;
         image.load(depth);
-        find_surface_points(image, camera, order, kHalfWindow, points);
-        grid.index(points);
+        find_points();
         std::fill(taken.begin(), taken.end(), std::uint8_t{0});
         pool.begin();
         int failures = 0;
@@ -182,10 +249,12 @@ struct ShapeDetector::State {
             const std::size_t best = pool.sure_best(points);
             if (pool.may_have_missed(pool.support_of(best), points.size)) continue;
             const Shape candidate = pool.take(best);
-            if (extract(candidate))
-                drop_taken();
-            else
+            if (!extract(candidate)) {
                 ++failures;
+                continue;
+            }
+            drop_taken();
+            failures = 0;
         }
         borders.share_out(image, {result.data(), results});
         std::sort(
@@ -205,6 +274,7 @@ struct ShapeDetector::State {
     DisparityScale scale;
     DisparityImage image;
     ShapeFitter fitter;
+    PlanePair pair;
     ShapeBorders borders;
     ShapeGrid grid;
     ShapePool pool;
@@ -212,7 +282,7 @@ struct ShapeDetector::State {
     SurfacePoints points, rest, own;   // points not taken yet, in that order
     std::vector<ShapeCandidate> guesses;
     std::vector<std::uint8_t> taken;  // pixels
-    std::vector<std::uint32_t> pixels, compared;
+    std::vector<std::uint32_t> pixels, compared, steep;
     std::vector<SceneShape> result;
     std::size_t results = 0;
 };
@@ -226,7 +296,7 @@ Result<ShapeDetector> ShapeDetector::create(
     const RgbdCamera& camera, const ShapesSettings& settings
 ) {
     const auto refuse = [](const char* field, double value, const char* cure) {
-        return fail(ErrorCode::invalid_argument, field, "is " + std::to_string(value), cure);
+        return fail(ErrorCode::invalid_argument, field, "is " + number_text(value), cure);
     };
     if (std::none_of(settings.kinds.begin(), settings.kinds.end(), [](bool kind) { return kind; }))
         return refuse("kinds", 0, "ask for at least one kind of shape");

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <optional>
 
+#include "pipeline/core/number_text.hpp"
 #include "pipeline/track/object_region.hpp"
 #include "pipeline/track/picture_box.hpp"
 #include "pipeline/track/sift3d_model.hpp"
@@ -200,7 +201,7 @@ Result<void> check(
         return fail(
             ErrorCode::invalid_argument,
             path + ".scale_m",
-            "is " + std::to_string(settings.scale_m),
+            "is " + number_text(settings.scale_m),
             "give metres from 0.001 to 0.1"
         );
     if (settings.fewest_spots < 4 || settings.fewest_spots > 1000)

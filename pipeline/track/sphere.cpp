@@ -5,6 +5,7 @@
 #include <limits>
 #include <optional>
 
+#include "pipeline/core/number_text.hpp"
 #include "pipeline/track/assignment.hpp"
 #include "pipeline/track/predicted_point.hpp"
 #include "pipeline/track/sphere_candidate.hpp"
@@ -162,6 +163,10 @@ private:
         target.sample.p_cam = fit.sphere.centre_cam;
         target.sample.covariance.topLeftCorner<3, 3>() = fit.covariance;
         target.sample.quality = fit.quality;
+        if (!target.object.settings.radius_m) {
+            target.sample.size.radius_m = fit.sphere.radius;
+            target.sample.size.radius_u = fit.radius_u;
+        }
     }
 
     /// Nearest to where one of them should be first; biggest first where nobody knows.
@@ -256,7 +261,7 @@ Result<void> check_radius(const std::string& field, double radius_m) {
     return fail(
         ErrorCode::invalid_argument,
         field,
-        "is " + std::to_string(radius_m),
+        "is " + number_text(radius_m),
         "give a radius in metres above 0 and up to 2, e.g. 0.05"
     );
 }
@@ -271,8 +276,8 @@ Result<void> check(const SphereSettings& settings, const std::string& path) {
     return fail(
         ErrorCode::invalid_argument,
         path + ".min_radius_m",
-        "is " + std::to_string(settings.min_radius_m) + ", not below max_radius_m " +
-            std::to_string(settings.max_radius_m),
+        "is " + number_text(settings.min_radius_m) + ", not below max_radius_m " +
+            number_text(settings.max_radius_m),
         "give a range, or radius_m alone"
     );
 }

@@ -5,6 +5,7 @@
 
 #include <Eigen/Eigenvalues>
 
+#include "pipeline/core/number_text.hpp"
 #include "pipeline/track/model_fit.hpp"
 #include "pipeline/track/patch_recognition.hpp"
 
@@ -210,7 +211,7 @@ Result<void> check(const SurfacePatchSettings& settings, const std::string& path
     return fail(
         ErrorCode::invalid_argument,
         path + ".model_unit_m",
-        "is " + std::to_string(settings.model_unit_m),
+        "is " + number_text(settings.model_unit_m),
         "give metres for each unit of the model, above 0, e.g. 0.001 for millimetres"
     );
 }

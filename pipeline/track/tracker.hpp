@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -32,6 +33,10 @@ public:
         std::span<const MovedPixels> moved,
         std::vector<TrackSample>& samples
     ) = 0;
+
+    /// What is wrong with a setting that only a frame could tell, as a place without depth; told
+    /// once, after the frame in which it was found.
+    [[nodiscard]] virtual std::optional<Error> take_fault() { return std::nullopt; }
 
     /// Forgets where the objects were.
     virtual void reset() = 0;

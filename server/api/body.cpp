@@ -149,7 +149,7 @@ Result<void> check_query(const net::Request& request, const std::vector<std::str
             ErrorCode::invalid_argument,
             name.substr(0, 40),
             "is no parameter of this address",
-            names.empty() ? "leave it out" : "did you mean " + nearest_name(name, names) + "?"
+            names.empty() ? "leave it out" : did_you_mean(name, names)
         );
     }
     if (!request.repeated.empty()) {

@@ -2,6 +2,7 @@
 #include <nlohmann/json.hpp>
 
 #include "pipeline/analysis/pendulum.hpp"
+#include "pipeline/core/file_ending.hpp"
 #include "pipeline/sensor/file_bytes.hpp"
 #include "server/commands/arguments.hpp"
 #include "server/commands/commands.hpp"
@@ -116,7 +117,7 @@ Result<Material> from_recording(
 }
 
 bool is_table(const std::filesystem::path& path) {
-    const auto ending = path.extension();
+    const auto ending = file_ending(path);
     return ending == ".csv" || ending == ".tsv" || ending == ".txt";
 }
 

@@ -39,9 +39,9 @@ int unknown(const std::string& word) {
         names.emplace_back(command.name);
     std::fprintf(
         stderr,
-        "command: \"%s\" is not known; did you mean %s? `kinectlab --help` lists all\n",
+        "command: \"%s\" is not known; %s; `kinectlab --help` tells what they do\n",
         word.substr(0, 60).c_str(),
-        nearest_name(word, names).c_str()
+        did_you_mean(word, names).c_str()
     );
     return kUsage;
 }

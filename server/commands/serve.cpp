@@ -18,6 +18,7 @@
 #include "server/experiments/share_dir.hpp"
 #include "server/net/server.hpp"
 #include "server/net/static_files.hpp"
+#include "server/rig/device.hpp"
 
 namespace kinectlab::commands {
 namespace {
@@ -76,10 +77,18 @@ void greet(const std::string& url, const std::optional<auth::NewAccount>& first_
     std::fflush(stdout);
 }
 
-std::vector<rig::RigSettings> rig_settings(const config::Config& config) {
+std::vector<rig::RigSettings> rig_settings(
+    const config::Config& config, const std::vector<experiments::Definition>& definitions
+) {
     std::vector<rig::RigSettings> settings;
-    for (const auto& rig : config.rigs)
-        settings.push_back({rig.id, rig.name, rig.uri, rig.experiments});
+    for (const auto& rig : config.rigs) {
+        auto ids = rig.experiments;
+        if (ids.empty())
+            for (const auto& definition : definitions)
+                if (rig::is_simulated(rig.uri) || definition.apparatus == "pendulum")
+                    ids.push_back(definition.id);
+        settings.push_back({rig.id, rig.name, rig.uri, std::move(ids)});
+    }
     return settings;
 }
 
@@ -116,7 +125,7 @@ Result<void> run_server(const config::Config& config, const StopSignals& signals
 
     bus::Bus bus;
     rig::ExperimentLibrary library(std::move(*definitions), store->definitions);
-    rig::RigService rigs(rig_settings(config), library, *store, bus);
+    rig::RigService rigs(rig_settings(config, library.built_in()), library, *store, bus);
     live::JpegCache jpegs;
     live::Hub hub(
         bus,

@@ -45,7 +45,7 @@ std::string check_seed(const std::string& word) {
 std::optional<int> parse(int argc, char** argv, Arguments& arguments) {
     CLI::App app(
         "Records a simulated experiment as a folder in the TUM RGB-D layout: at rest for two "
-        "seconds, displaced, held, released.",
+        "seconds, brought to its start, held, released.",
         "kinectlab simulate"
     );
     app.add_option("EXPERIMENT", arguments.experiment, "what to simulate, e.g. pendulum")
@@ -65,21 +65,36 @@ std::optional<int> parse(int argc, char** argv, Arguments& arguments) {
     return parse_arguments(app, argc, argv);
 }
 
-simulate::RunSettings run_settings(
-    const Values& values, const Arguments& arguments, simulate::NoiseModel noise
+// What the definition displaces to, in the actuator's units.
+std::optional<double> displacement_of(
+    const experiments::Definition& definition, const Values& values
 ) {
+    std::optional<double> value;
+    for (const auto& step : definition.sequence) {
+        if (step.kind != experiments::SequenceStep::Kind::displace) continue;
+        value = experiments::value_of(step.to, values);
+        if (value && step.to.parameter && step.to.parameter->ends_with("_deg"))
+            *value *= std::numbers::pi / 180.0;
+    }
+    return value;
+}
+
+Result<simulate::RunSettings> run_settings(
+    const experiments::Definition& definition, const Values& values, const Arguments& arguments
+) {
+    const auto noise = simulate::noise_model_named(arguments.noise);
+    if (!noise) return tl::unexpected(noise.error());
+    auto apparatus = simulate::settings_for(definition.apparatus, values);
+    if (!apparatus) return tl::unexpected(apparatus.error());
     simulate::RunSettings run;
-    run.rig.pendulum = {
-        values.at("length_m"),
-        values.at("bob_radius_m"),
-        values.at("gravity"),
-        values.at("latitude_deg"),
-        values.at("damping_per_s")};
-    run.rig.noise = noise;
+    run.rig.apparatus = std::move(*apparatus);
+    run.rig.noise = *noise;
     run.rig.seed = arguments.seed;
     run.rig.start = kStart;
-    run.amplitude_rad = values.at("amplitude_deg") * std::numbers::pi / 180.0;
-    run.seconds = arguments.seconds.value_or(values.at("duration_s"));
+    run.displacement = displacement_of(definition, values);
+    run.seconds = arguments.seconds.value_or(
+        experiments::value_of(definition.duration, values).value_or(run.seconds)
+    );
     return run;
 }
 
@@ -95,19 +110,33 @@ Result<SourceInfo> describe(const simulate::RunSettings& run, const std::string&
     return info;
 }
 
+// One body is the object of the experiment; of several each gets a file, and the first both.
+void add_truth(TimeNs t, const simulate::Truth& truth, SequenceWriter& writer) {
+    const auto pose_of = [t](const simulate::Body& body) {
+        return TumPose{t, body.p_lab, body.q_lab_body};
+    };
+    writer.add_truth(pose_of(truth.body()));
+    if (truth.bodies.size() == 1) return;
+    for (const auto& body : truth.bodies)
+        writer.add_truth_of(body.name, pose_of(body));
+}
+
 Result<simulate::RunSummary> record(
-    const simulate::RunSettings& run, SequenceWriter& writer, const Values& values
+    const simulate::RunSettings& run,
+    SequenceWriter& writer,
+    const std::string& experiment,
+    const Values& values
 ) {
     const double about = run.rest_s + run.held_s + run.seconds + kAboutToDisplace;
     Progress progress("frames", static_cast<std::size_t>(about * simulate::kFrameRateHz));
     auto summary =
         simulate::simulate_run(run, [&](const RgbdFrame& frame, const simulate::Truth& truth) {
             progress.step();
-            writer.add_truth({frame.t, truth.p_lab, Eigen::Quaterniond::Identity()});
+            add_truth(frame.t, truth, writer);
             return writer.add(frame);
         });
     if (!summary) return summary;
-    const nlohmann::json settings = {{"experiment", "pendulum"}, {"parameters", values}};
+    const nlohmann::json settings = {{"experiment", experiment}, {"parameters", values}};
     writer.add_file("experiment.json", settings.dump(1) + "\n");
     writer.finish();
     return summary;
@@ -127,7 +156,7 @@ nlohmann::json to_json(
         {"seed", arguments.seed},
         {"noise", arguments.noise},
         {"frames", summary.frames},
-        {"first_swinging_frame", summary.first_swinging},
+        {"first_free_frame", summary.first_free},
         {"release_s", summary.release_s},
         {"provenance", {{"program", "kinectlab"}, {"version", config::version()}}}};
 }
@@ -153,18 +182,16 @@ int simulate(int argc, char** argv) {
         );
     auto values = experiments::validate(*definition, *given);
     if (!values) return report_usage(values.error());
-    const auto noise = simulate::noise_model_named(arguments.noise);
-    if (!noise) return report_usage(noise.error());
-
-    const auto run = run_settings(*values, arguments, *noise);
-    (*values)["duration_s"] = run.seconds;
-    const auto info = describe(run, arguments.experiment);
+    const auto run = run_settings(*definition, *values, arguments);
+    if (!run) return report_usage(run.error());
+    if (const auto& duration = definition->duration.parameter) (*values)[*duration] = run->seconds;
+    const auto info = describe(*run, arguments.experiment);
     if (!info) return report_usage(info.error());
     auto writer = SequenceWriter::create(arguments.out, *info);
     if (!writer) return report(writer.error());
-    const auto summary = record(run, *writer, *values);
+    const auto summary = record(*run, *writer, arguments.experiment, *values);
     if (!summary) return report(summary.error());
-    print_json(to_json(*summary, run, arguments, *values));
+    print_json(to_json(*summary, *run, arguments, *values));
     return kOk;
 }
 

@@ -30,9 +30,7 @@ std::filesystem::path default_data_dir(const Environment& environment) {
 }
 
 std::vector<RigConfig> default_rigs() {
-    return {
-        {"rig-1", "Pendulum 1", "sim://rig-1", {"pendulum"}},
-        {"rig-2", "Pendulum 2", "sim://rig-2", {"pendulum"}}};
+    return {{"rig-1", "Rig 1", "sim://rig-1", {}}, {"rig-2", "Rig 2", "sim://rig-2", {}}};
 }
 
 bool is_rig_id(const std::string& id) {
@@ -91,10 +89,7 @@ Result<std::vector<RigConfig>> read_rigs(const json& list) {
 Result<std::string> check_log_level(const std::string& field, const std::string& level) {
     if (std::find(kLogLevels.begin(), kLogLevels.end(), level) != kLogLevels.end()) return level;
     return fail(
-        ErrorCode::invalid_argument,
-        field,
-        "is '" + level + "'",
-        "did you mean " + nearest_name(level, kLogLevels) + "? Valid: debug, info, warn, error"
+        ErrorCode::invalid_argument, field, "is '" + level + "'", did_you_mean(level, kLogLevels)
     );
 }
 

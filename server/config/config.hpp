@@ -16,7 +16,8 @@ struct RigConfig {
     std::string id;    ///< in URLs: lower-case letters, digits and dashes
     std::string name;  ///< for people
     std::string uri;   ///< of the device as OpenNI2 lists it, e.g. "sim://rig-1"
-    std::vector<std::string> experiments{"pendulum"};
+    /// Empty: a simulated rig does all that come with the program, a real one the pendulum's.
+    std::vector<std::string> experiments;
 };
 
 struct Address {

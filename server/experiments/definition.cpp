@@ -50,9 +50,10 @@ Result<Values> validate(const Definition& definition, const Values& given, RigKi
     for (const auto& [name, value] : given) {
         const Parameter* parameter = find(definition, name);
         if (parameter == nullptr) {
-            const std::string nearest = nearest_name(name, names_of(definition, rig));
             return wrong(
-                name, "is not a parameter of " + definition.id, "did you mean " + nearest + "?"
+                name,
+                "is not a parameter of " + definition.id,
+                did_you_mean(name, names_of(definition, rig))
             );
         }
         if (rig != RigKind::simulated && parameter->simulation_only) {

@@ -251,10 +251,7 @@ Result<Definition> load_definition(const std::filesystem::path& folder, const st
         ids.push_back(definition.id);
     }
     return fail(
-        ErrorCode::not_found,
-        "experiment",
-        "\"" + id + "\" is not known",
-        "did you mean " + nearest_name(id, ids) + "?"
+        ErrorCode::not_found, "experiment", "\"" + id + "\" is not known", did_you_mean(id, ids)
     );
 }
 

@@ -230,14 +230,11 @@ const MethodReader* reader_of(const std::string& method) {
 Result<void> check_method(const std::string& method, const std::string& field) {
     if (reader_of(method) != nullptr) return {};
     const std::vector<std::string> names(kTrackingMethods.begin(), kTrackingMethods.end());
-    std::string all;
-    for (const auto& name : names)
-        all += (all.empty() ? "" : ", ") + name;
     return fail(
         ErrorCode::invalid_argument,
         field,
         "is \"" + method.substr(0, 60) + "\"",
-        "did you mean " + nearest_name(method, names) + "? Valid: " + all
+        did_you_mean(method, names)
     );
 }
 

@@ -115,17 +115,10 @@ const std::vector<Stage>& stages() {
           reference(ReferenceMethod::median, {"seconds"})}},
         {"change",
          {change(ChangeMethod::image_grid, {"threshold_steps"}),
-          change(ChangeMethod::octree, {"voxel_m", "least_points"})}},
+          change(ChangeMethod::octree, {"voxel_m", "least_points", "threshold_steps"})}},
         {"segments", {connected()}},
     };
     return all;
-}
-
-std::string joined(const std::vector<std::string>& words) {
-    std::string text;
-    for (const auto& word : words)
-        text += (text.empty() ? "" : ", ") + word;
-    return text;
 }
 
 /// The method decides which keys are right, so a wrong method is told before a wrong key.
@@ -146,7 +139,7 @@ Result<void> read_stage(
             ErrorCode::invalid_argument,
             path + ".method",
             "is \"" + name.substr(0, 60) + "\"",
-            "did you mean " + nearest_name(name, names) + "? Valid: " + joined(names)
+            did_you_mean(name, names)
         );
     std::vector<std::string> keys = {"method"};
     keys.insert(keys.end(), method->keys.begin(), method->keys.end());
@@ -198,9 +191,8 @@ json to_json(const PreprocessSettings& settings) {
         all["depth_cut"]["farthest_m"] = settings.depth_cut.farthest_m;
     if (settings.reference.method != ReferenceMethod::scene)
         all["reference"]["seconds"] = settings.reference.seconds;
-    if (settings.change.method == ChangeMethod::image_grid) {
-        all["change"]["threshold_steps"] = settings.change.threshold_steps;
-    } else {
+    all["change"]["threshold_steps"] = settings.change.threshold_steps;
+    if (settings.change.method == ChangeMethod::octree) {
         all["change"]["voxel_m"] = settings.change.voxel_m;
         all["change"]["least_points"] = settings.change.least_points;
     }

@@ -101,11 +101,7 @@ ObjectReader::ObjectReader(const json& json, std::string path, std::vector<std::
     }
     for (const auto& [key, value] : json.items()) {
         if (std::find(keys.begin(), keys.end(), key) != keys.end()) continue;
-        refuse(
-            key,
-            "is not known",
-            "did you mean " + nearest_name(key, keys) + "? Valid: " + join(keys)
-        );
+        refuse(key, "is not known", did_you_mean(key, keys));
         return;
     }
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <string>
 
 #include <fmt/format.h>
 
@@ -10,6 +11,7 @@ namespace kinectlab::experiments {
 namespace {
 
 constexpr std::size_t kMostBytes = 20'000;
+const std::string kFormulaSigns = ",;:! {}\\%&|";  // after a backslash
 
 // Whatever sets a symbol; nothing that loads, links, defines or styles.
 constexpr std::array<std::string_view, 83> kFormulaCommands{
@@ -84,8 +86,7 @@ Result<void> check_student_text(std::string_view text, const std::string& path) 
         const std::string_view command = text.substr(i + 1, end - i - 1);
         const bool known = std::find(kFormulaCommands.begin(), kFormulaCommands.end(), command) !=
                            kFormulaCommands.end();
-        const bool sign = command.empty() &&
-                          std::string_view(",;:! {}\\%&|").find(next) != std::string_view::npos;
+        const bool sign = command.empty() && kFormulaSigns.find(next) != std::string::npos;
         if (!known && !sign)
             return refuse(
                 i,

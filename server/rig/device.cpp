@@ -9,7 +9,7 @@ namespace {
 /// A camera without anything that moves the bob: live pictures, but no runs.
 class NoActuator final : public Actuator {
 public:
-    Result<void> configure(const lab::Parameters&) override { return none(); }
+    Result<void> configure(const std::string&, const lab::Parameters&) override { return none(); }
     Result<void> displace(double) override { return none(); }
     Result<void> hold() override { return none(); }
     Result<void> release() override { return none(); }

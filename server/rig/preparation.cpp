@@ -86,9 +86,9 @@ Result<bool> Preparation::over(const PreparationStep& step, TimeNs now) {
     const auto state = actuator_.state();
     if (!state) return tl::unexpected(state.error());
     const bool stops = step.kind == Kind::stop;
-    const bool there = stops ? state->motion == BobMotion::at_rest
-                             : state->motion == BobMotion::held &&
-                                   std::abs(state->angle_rad - step.value) <= settings_.tolerance;
+    const bool there = stops ? state->motion == ApparatusMotion::at_rest
+                             : state->motion == ApparatusMotion::held &&
+                                   std::abs(state->value - step.value) <= settings_.tolerance;
     if (there) return true;
     if (now - since_ <= settings_.step_limit) return false;
     const std::string told =

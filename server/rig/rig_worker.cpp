@@ -202,7 +202,7 @@ void RigWorker::end_execution(TimeNs now) {
 void RigWorker::watch_braking(TimeNs now) {
     if (!braking_since_) return;
     const auto state = device_->actuator->state();
-    if (state && state->motion == BobMotion::at_rest) {
+    if (state && state->motion == ApparatusMotion::at_rest) {
         braking_since_.reset();
     } else if (now - *braking_since_ > parts_.limits.stop_echo) {
         trouble_ = "the bob did not come to rest";

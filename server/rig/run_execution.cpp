@@ -91,7 +91,7 @@ Result<void> RunExecution::begin_preparation() {
     if (!definition) return tl::unexpected(definition.error());
     preparation_.emplace(*rig_.device.actuator, preparation_for(*definition, run_.parameters));
     end_watch_.emplace(definition->early_end);
-    return rig_.device.actuator->configure(run_.parameters);
+    return rig_.device.actuator->configure(definition->apparatus, run_.parameters);
 }
 
 void RunExecution::observe(
@@ -172,7 +172,7 @@ void RunExecution::watch(RunState state, TimeNs now) {
 void RunExecution::await_release(TimeNs now) {
     const auto state = rig_.device.actuator->state();
     if (!state) return fail_run(now, state.error());
-    if (state->motion == BobMotion::swinging) {
+    if (state->motion == ApparatusMotion::free) {
         advance(RunEvent::released, now, "The actuator let the bob go");
     } else if (now - entered_at_ > limits_.release_echo) {
         fail_run(

@@ -3,73 +3,67 @@
 #include <span>
 
 #include "pipeline/drivers/simulated_rig/protocol.hpp"
+#include "pipeline/simulate/apparatus_text.hpp"
 
 namespace kinectlab::rig {
 namespace {
 
 namespace sim = simulated_rig;
 
-constexpr BobMotion to_motion(sim::Motion motion) {
+constexpr ApparatusMotion to_motion(sim::Motion motion) {
     switch (motion) {
         case sim::Motion::at_rest:
-            return BobMotion::at_rest;
-        case sim::Motion::moving_to_angle:
-            return BobMotion::moving_to_angle;
+            return ApparatusMotion::at_rest;
+        case sim::Motion::moving:
+            return ApparatusMotion::moving;
         case sim::Motion::held:
-            return BobMotion::held;
-        case sim::Motion::swinging:
-            return BobMotion::swinging;
+            return ApparatusMotion::held;
+        case sim::Motion::free:
+            return ApparatusMotion::free;
         case sim::Motion::braking:
-            return BobMotion::braking;
+            return ApparatusMotion::braking;
     }
-    return BobMotion::swinging;  // unknown: assume the one that has to be stopped
+    return ApparatusMotion::free;  // unknown: assume the one that has to be stopped
 }
 
 class SimulatedActuator final : public Actuator {
 public:
     explicit SimulatedActuator(OpenniSource& source) : source_(source) {}
 
-    Result<void> configure(const lab::Parameters& parameters) override {
-        sim::PendulumParameters pendulum;
-        const auto take = [&](const char* name, double& value) {
-            if (const auto found = parameters.find(name); found != parameters.end()) {
-                value = found->second;
-            }
-        };
-        take("length_m", pendulum.length_m);
-        take("bob_radius_m", pendulum.bob_radius_m);
-        take("gravity", pendulum.gravity_m_s2);
-        take("latitude_deg", pendulum.latitude_deg);
-        take("damping_per_s", pendulum.damping_per_s);
-        return set(sim::kPendulum, pendulum, "the pendulum's parameters");
+    Result<void> configure(const std::string& apparatus, const lab::Parameters& parameters)
+        override {
+        const auto settings = simulate::settings_for(apparatus, parameters);
+        if (!settings) return tl::unexpected(settings.error());
+        // The device can only say no; why it would is found out here.
+        if (const auto made = simulate::make_apparatus(*settings); !made)
+            return tl::unexpected(made.error());
+        const std::string text = simulate::to_text(*settings);
+        return set(sim::kApparatus, std::as_bytes(std::span(text)), "the apparatus' parameters");
     }
 
-    Result<void> displace(double angle_rad) override {
-        return command(sim::Action::displace, angle_rad, "to move the bob");
+    Result<void> displace(double value) override {
+        return command(sim::Action::displace, value, "to move the apparatus to its start");
     }
-    Result<void> hold() override { return command(sim::Action::hold, 0.0, "to hold the bob"); }
-    Result<void> release() override {
-        return command(sim::Action::release, 0.0, "to release the bob");
-    }
-    Result<void> stop() override { return command(sim::Action::stop, 0.0, "to stop the bob"); }
+    Result<void> hold() override { return command(sim::Action::hold, 0.0, "to hold"); }
+    Result<void> release() override { return command(sim::Action::release, 0.0, "to release"); }
+    Result<void> stop() override { return command(sim::Action::stop, 0.0, "to stop"); }
 
     Result<ActuatorState> state() override {
         sim::RigState state;
         if (!source_.get_property(sim::kState, std::as_writable_bytes(std::span(&state, 1)))) {
             return fail(ErrorCode::unavailable, "actuator", "the device does not tell its state");
         }
-        return ActuatorState{to_motion(state.motion), state.angle_rad};
+        return ActuatorState{to_motion(state.motion), state.value};
     }
 
 private:
-    Result<void> command(sim::Action action, double angle_rad, const char* what) {
-        const sim::ActuatorCommand command{.action = action, .angle_rad = angle_rad};
-        return set(sim::kActuator, command, what);
+    Result<void> command(sim::Action action, double value, const char* what) {
+        const sim::ActuatorCommand command{.action = action, .value = value};
+        return set(sim::kActuator, std::as_bytes(std::span(&command, 1)), what);
     }
 
-    template <class Value>
-    Result<void> set(int property, const Value& value, const char* what) {
-        if (source_.set_property(property, std::as_bytes(std::span(&value, 1)))) return {};
+    Result<void> set(int property, std::span<const std::byte> value, const char* what) {
+        if (source_.set_property(property, value)) return {};
         return fail(ErrorCode::unavailable, "actuator", std::string("the device refused ") + what);
     }
 

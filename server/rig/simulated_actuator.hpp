@@ -7,7 +7,7 @@
 
 namespace kinectlab::rig {
 
-/// The electromagnet and the brake of a simulated rig, reached through its device's properties.
+/// The arms, magnets and brakes of a simulated rig, reached through its device's properties.
 /// `source` must outlive the actuator.
 [[nodiscard]] std::unique_ptr<Actuator> make_simulated_actuator(OpenniSource& source);
 

@@ -8,6 +8,7 @@
 
 #include "pipeline/motion/motion.hpp"
 #include "pipeline/run/chain.hpp"
+#include "pipeline/simulate/pendulum.hpp"
 #include "pipeline/simulate/simulate_run.hpp"
 
 namespace kinectlab::bench {
@@ -27,8 +28,8 @@ simulate::RunSettings run_settings(std::uint64_t seed, simulate::NoiseModel nois
     run.rig.noise = noise;
     run.rig.seed = seed;
     run.rig.with_colour = false;
-    run.rig.pendulum.gravity_m_s2 = kTrueG;
-    run.amplitude_rad = kAmplitude;
+    run.rig.apparatus.parameters["gravity"] = kTrueG;
+    run.displacement = kAmplitude;
     run.seconds = kSeconds;
     return run;
 }
@@ -38,14 +39,14 @@ simulate::RunSettings run_settings(std::uint64_t seed, simulate::NoiseModel nois
 Trajectory tracked_run(std::uint64_t seed, simulate::NoiseModel noise) {
     const simulate::RunSettings run = run_settings(seed, noise);
     const auto rig = or_throw(simulate::SimulatedRig::create(run.rig));
-    const ObjectSpec bob{"bob", SphereSettings{.radius_m = run.rig.pendulum.bob_radius_m}};
+    const ObjectSpec bob{
+        "bob", SphereSettings{.radius_m = simulate::PendulumParameters().bob_radius_m}};
     Chain chain = or_throw(Chain::create({rig.camera(), {bob}}));
     std::vector<TrackSample> samples;
     or_throw(simulate::simulate_run(
         run,
         [&](const RgbdFrame& frame, const simulate::Truth& truth) -> Result<void> {
-            if (truth.motion != simulate::Motion::swinging &&
-                truth.motion != simulate::Motion::held)
+            if (truth.motion != simulate::Motion::free && truth.motion != simulate::Motion::held)
                 return chain.learn(frame);
             auto found = chain.track(frame);
             if (!found) return tl::unexpected(found.error());
@@ -57,12 +58,13 @@ Trajectory tracked_run(std::uint64_t seed, simulate::NoiseModel noise) {
 }
 
 Trajectory noisy_truth(std::uint64_t seed) {
-    const simulate::RunSettings run = run_settings(seed, simulate::NoiseModel::none);
+    simulate::PendulumParameters pendulum;
+    pendulum.gravity_m_s2 = kTrueG;
     std::mt19937_64 random(seed);
     std::normal_distribution<double> normal;
     const Eigen::Vector3d sigma(5e-4, 2e-3, 5e-4);
     simulate::Swing swing(
-        run.rig.pendulum, {{std::sin(kAmplitude), 0.0, -std::cos(kAmplitude)}, {0.0, 0.0, 0.0}}
+        pendulum, {{std::sin(kAmplitude), 0.0, -std::cos(kAmplitude)}, {0.0, 0.0, 0.0}}
     );
     Trajectory trajectory{"bob", {}};
     for (int i = 0; i < static_cast<int>(kSeconds * simulate::kFrameRateHz); ++i) {
@@ -70,7 +72,7 @@ Trajectory noisy_truth(std::uint64_t seed) {
         MotionSample sample;
         sample.t = from_seconds(t);
         sample.status = TrackStatus::tracked;
-        sample.p_lab = run.rig.pendulum.length_m * swing.at(t).n;
+        sample.p_lab = pendulum.length_m * swing.at(t).n;
         for (int k = 0; k < 3; ++k)
             sample.p_lab[k] += sigma[k] * normal(random);
         sample.covariance.topLeftCorner<3, 3>() = sigma.cwiseAbs2().asDiagonal();

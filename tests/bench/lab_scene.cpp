@@ -9,6 +9,7 @@
 #include <stdexcept>
 
 #include "pipeline/sensor/pcd_file.hpp"
+#include "pipeline/simulate/pendulum.hpp"
 #include "pipeline/simulate/scene.hpp"
 #include "pipeline/simulate/simulated_rig.hpp"
 
@@ -85,11 +86,11 @@ LabScene lab_scene(simulate::NoiseModel noise, double t_s, std::uint64_t seed) {
 
     LabScene scene;
     scene.camera = rig->camera();
-    scene.bob_radius_m = settings.pendulum.bob_radius_m;
-    scene.bob_cam = rig->T_lab_cam().inverse() * rig->truth().p_lab;
+    scene.bob_radius_m = simulate::PendulumParameters().bob_radius_m;
+    scene.bob_cam = rig->T_lab_cam().inverse() * rig->truth().body().p_lab;
     rig->render(scene.frame);
     scene.seen = cloud_from(scene.frame, scene.camera.depth, scene.camera.depth_unit_m);
-    const simulate::Room room(simulate::pivot_of(settings.pendulum.length_m).z());
+    const simulate::Room room(simulate::pivot_of(simulate::PendulumParameters().length_m).z());
     cast_exact(scene, room, rig->T_lab_cam());
     return scene;
 }

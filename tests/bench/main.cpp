@@ -13,8 +13,9 @@ namespace {
 using namespace kinectlab::bench;
 
 constexpr const char* kUsage =
-    "bench [--filter REGEX] [--json FILE]\n"
+    "bench [--list] [--filter REGEX] [--json FILE]\n"
     "Measures the figures that the project claims, each beside its peer in the same run.\n"
+    "  --list          the names that --filter is compared with, one a line; measures nothing\n"
     "  --filter REGEX  only figures whose name matches\n"
     "  --json FILE     also write them as JSON\n";
 
@@ -22,6 +23,7 @@ struct Options {
     std::string filter = ".*";
     std::string json;
     bool help = false;
+    bool list = false;
 };
 
 /// Throws std::invalid_argument with a line for the user.
@@ -31,6 +33,8 @@ Options parse(int argc, char** argv) {
         const std::string word = argv[i];
         if (word == "--help") {
             options.help = true;
+        } else if (word == "--list") {
+            options.list = true;
         } else if ((word == "--filter" || word == "--json") && i + 1 < argc) {
             (word == "--filter" ? options.filter : options.json) = argv[++i];
         } else {
@@ -81,6 +85,14 @@ void print(const Figure& figure) {
     std::fflush(stdout);
 }
 
+int list(const Options& options) {
+    const std::regex filter(options.filter, std::regex::icase);
+    for (const auto& measurement : kMeasurements)
+        if (std::regex_search(measurement.figures, filter))
+            std::printf("%s\n", measurement.figures);
+    return 0;
+}
+
 int run(const Options& options) {
     const std::regex filter(options.filter, std::regex::icase);
     std::printf("%-58s %10s %-8s %-9s %-7s %s\n", "figure", "value", "unit", "bound", "", "peer");
@@ -110,7 +122,7 @@ int main(int argc, char** argv) {
             std::cout << kUsage;
             return 0;
         }
-        return run(options);
+        return options.list ? list(options) : run(options);
     } catch (const std::invalid_argument& wrong) {
         std::cerr << wrong.what() << '\n' << kUsage;
     } catch (const std::regex_error& wrong) {

@@ -20,12 +20,16 @@ Figures measure_depth_cut();
 Figures measure_gravity_from_positions();
 Figures measure_gravity_khoshelham();
 Figures measure_gravity_kinect();
+Figures measure_coverage();
+Figures measure_coverage_bodies();
 Figures measure_box_tracking();
 Figures measure_recognition();
 Figures measure_live_latency();
 Figures measure_texture_pose();
 Figures measure_sift3d_keypoints();
 Figures measure_rendering();
+Figures measure_colour_place();
+Figures measure_identities();
 
 /// Everything that can be measured. To add something: declare it above and name it here with the
 /// figures it yields, so that --filter can pass over what is not wanted.
@@ -49,12 +53,16 @@ inline constexpr std::array kMeasurements{
     Measurement{"g, white positions, analysis of 900 positions", measure_gravity_from_positions},
     Measurement{"g, khoshelham noise", measure_gravity_khoshelham},
     Measurement{"g, kinect noise", measure_gravity_kinect},
+    Measurement{"coverage, thrown rolling sliding ball, free driven spring", measure_coverage},
+    Measurement{"coverage bodies: collision, rigid body, path", measure_coverage_bodies},
     Measurement{"box of 16x10x12 cm at 1.2 m", measure_box_tracking},
     Measurement{"recognition of a complex object", measure_recognition},
     Measurement{"live: capture to pose at a WebSocket client, frames lost", measure_live_latency},
     Measurement{"2-D texture pose, SIFT", measure_texture_pose},
     Measurement{"3-D SIFT keypoints", measure_sift3d_keypoints},
     Measurement{"rendering a rig", measure_rendering},
+    Measurement{"colour: place, coverage", measure_colour_place},
+    Measurement{"identities: names switched, fragments, IDF1", measure_identities},
 };
 
 }  // namespace kinectlab::bench

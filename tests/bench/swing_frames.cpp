@@ -4,6 +4,7 @@
 
 #include <time.h>
 
+#include "pipeline/simulate/pendulum.hpp"
 #include "pipeline/simulate/simulate_run.hpp"
 
 namespace kinectlab::bench {
@@ -21,13 +22,13 @@ SwingFrames simulated_swing(const SwingSettings& settings) {
 
     SwingFrames frames;
     frames.camera = rig->camera();
-    frames.radius_m = run.rig.pendulum.bob_radius_m;
+    frames.radius_m = simulate::PendulumParameters().bob_radius_m;
     const auto done = simulate::simulate_run(
         run,
         [&](const RgbdFrame& frame, const simulate::Truth& truth) -> Result<void> {
-            if (truth.motion == simulate::Motion::swinging) {
+            if (truth.motion == simulate::Motion::free) {
                 frames.swing.push_back(frame);
-                frames.centre_cam.push_back(T_cam_lab * truth.p_lab);
+                frames.centre_cam.push_back(T_cam_lab * truth.body().p_lab);
             } else {
                 frames.before.push_back(frame);
             }

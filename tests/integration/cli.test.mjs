@@ -145,7 +145,7 @@ describe('a simulated pendulum', () => {
     assert.equal(result.provenance.camera.depth.fx, 580);
     assert.deepEqual(JSON.parse(readFileSync(path.join(out, 'result.json'), 'utf8')), result);
     assert.equal(rows(readFileSync(path.join(out, 'poses.csv'), 'utf8')).length, summary.frames);
-    assert.match(readFileSync(path.join(out, 'fit.csv'), 'utf8'), /^t_ns,x,y,z,fit_x/);
+    assert.match(readFileSync(path.join(out, 'fit.csv'), 'utf8'), /^object,t_ns,x,y,z,fit_x/);
   });
 
   test('is analysed with the length that its experiment.json tells', () => {
@@ -160,12 +160,13 @@ describe('a simulated pendulum', () => {
     const run = kinectlab('track', recording, '--objects', file);
     assert.equal(run.status, 0, run.stderr);
     const poses = rows(run.stdout);
-    assert.deepEqual(Object.keys(poses[0]), 't_ns,object,status,x,y,z,qx,qy,qz,qw,sx,sy,sz,vx,vy,vz,wx,wy,wz'.split(','));
+    assert.deepEqual(Object.keys(poses[0]), ('t_ns,object,status,x,y,z,qx,qy,qz,qw,sx,sy,sz,vx,vy,vz,wx,wy,wz,'
+      + 'srx,sry,srz,radius,s_radius,half_angle,s_half_angle,points,inlier_share,rms_steps').split(','));
     const truth = new Map(lines(recording, 'groundtruth.txt').slice(1).map((line) => {
       const [t, x, y, z] = line.split(' ');
       return [t.replace('.', ''), [x, y, z].map(Number)];
     }));
-    const swinging = poses.slice(summary.first_swinging_frame).filter(({ status }) => status === 'tracked');
+    const swinging = poses.slice(summary.first_free_frame).filter(({ status }) => status === 'tracked');
     assert.ok(swinging.length > 300, `${swinging.length} frames tracked`);
     const off = swinging.map(({ t_ns, x, y, z }) => {
       const at = truth.get(t_ns);
@@ -173,6 +174,56 @@ describe('a simulated pendulum', () => {
     });
     const rms = Math.sqrt(off.reduce((sum, d) => sum + d * d, 0) / off.length);
     assert.ok(rms < 0.005, `${rms} m`);
+  });
+
+  test('has a radius with its uncertainty where none was given, and a quality', () => {
+    const track = (bob) => rows(kinectlab('track', recording, '--objects', objects('free.json', bob)).stdout)
+      .filter(({ status }) => status === 'tracked');
+    const free = track({ name: 'bob', method: 'sphere', min_radius_m: 0.02, max_radius_m: 0.1 });
+    assert.ok(free.length > 300);
+    for (const { radius, s_radius, half_angle, points, inlier_share, rms_steps } of free) {
+      assert.ok(Math.abs(radius - 0.05) < 6 * s_radius && s_radius > 0, `${radius} ± ${s_radius}`);
+      assert.equal(half_angle, '');
+      assert.ok(points > 100 && inlier_share > 0.5 && rms_steps > 0.1, `${points} ${inlier_share} ${rms_steps}`);
+    }
+    const known = track({ name: 'bob', method: 'sphere', radius_m: 0.05 });
+    assert.ok(known.every(({ radius, srx }) => radius === '' && srx === ''), 'what was given or is not shown is empty');
+  });
+
+  const change_with = (name, preprocess) => {
+    const file = path.join(scratch, name);
+    writeFileSync(file, JSON.stringify({ objects: [{ name: 'moved', method: 'change' }], preprocess }));
+    return file;
+  };
+
+  // The wall is three metres away, where the noise is as wide as the voxels.
+  test('has one thing that moves, for the octree too', () => {
+    const csv = path.join(scratch, 'octree.csv');
+    const file = change_with('octree.json', { change: { method: 'octree' } });
+    const found = json(kinectlab('track', recording, '--objects', file, '--out', csv));
+    assert.deepEqual(found.objects.map(({ name }) => name), ['moved-1']);
+    assert.ok(found.objects[0].tracked > 0.9 * summary.frames);
+  });
+
+  test('says how much a wide smoothing leaves out', () => {
+    const file = change_with('wide.json', { smoothing: { method: 'moving_least_squares', radius_m: 0.2 } });
+    const run = kinectlab('track', recording, '--objects', file);
+    assert.equal(run.status, 0, run.stderr);
+    assert.match(run.stderr, /warning: preprocess\.smoothing\.radius_m: is 0\.2 m, which is more than 63 pixels .* nearer than 1\.84 m; \d+ % .* give at most 0\.\d+ m/);
+  });
+
+  test('names what a method is called elsewhere', () => {
+    const file = change_with('mls.json', { smoothing: { method: 'mls' } });
+    refused(kinectlab('track', recording, '--objects', file), 2, /did you mean moving_least_squares\?/);
+    const many = change_with('many.json', { outliers: { method: 'statistical', neighbours: 5000 } });
+    refused(kinectlab('track', recording, '--objects', many), 2, /is 5000; give .*1 to 4096/);
+  });
+
+  test('of a table in capitals is a table', () => {
+    const table = path.join(scratch, 'RUN.CSV');
+    const row = (i) => [i / 30, 0.17 * Math.cos(3.3 * i / 30), 0].join(',');
+    writeFileSync(table, ['t,x,y', ...Array.from({ length: 4 }, (_, i) => row(i))].join('\n'));
+    refused(kinectlab('analyse', 'pendulum', table), 1, /RUN\.CSV: has 4 rows/);
   });
 
   const analyse = (folder, ...args) => kinectlab('analyse', 'pendulum', folder, ...args);
@@ -200,6 +251,15 @@ describe('a simulated pendulum', () => {
     });
     refused(analyse(folder), 1, /\.png/, /PNG/);
   });
+  test('with a damaged colour picture that nobody needs is tracked, with a warning', () => {
+    const folder = damaged('grey', (f) => {
+      const file = pictures(f, 'rgb')[40];
+      writeFileSync(file, readFileSync(file).subarray(0, 5000));
+    });
+    const run = kinectlab('track', folder, '--objects', objects('grey.json', { name: 'bob', method: 'sphere', radius_m: 0.05 }));
+    assert.equal(run.status, 0, run.stderr);
+    assert.match(run.stderr, /warning: .*rgb.*\.png: .*damaged.*1 of \d+ colour pictures/);
+  });
   test('with a picture of another kind', () => {
     const folder = damaged('kind', (f) => cpSync(pictures(f, 'rgb')[40], pictures(f, 'depth')[40]));
     refused(analyse(folder), 1, /\.png/, /16-bit/);
@@ -221,7 +281,7 @@ describe('a simulated pendulum', () => {
   test('with less than one period', () => {
     const folder = damaged('short', (f) => {
       const all = lines(f, 'depth.txt');
-      const start = summary.first_swinging_frame + 1;
+      const start = summary.first_free_frame + 1;
       put(f, 'depth.txt', [all[0], ...all.slice(1, 31), ...all.slice(start, start + 25)]);
     });
     refused(analyse(folder), 1, /period/);
@@ -233,6 +293,16 @@ describe('a simulated pendulum', () => {
   test('that is not there', () => {
     refused(analyse(path.join(scratch, 'nowhere')), 1, /nowhere/, /not there/);
   });
+});
+
+const bench = path.join(path.dirname(program), 'bench');
+test('the benchmark lists what it can measure', { skip: existsSync(bench) ? false : `no ${bench}` }, () => {
+  const list = spawnSync(bench, ['--list'], { encoding: 'utf8' });
+  assert.equal(list.status, 0, list.stderr);
+  const names = list.stdout.trimEnd().split('\n');
+  assert.ok(names.length > 10 && names.includes('octree change'), list.stdout);
+  const some = spawnSync(bench, ['--list', '--filter', 'octree'], { encoding: 'utf8' });
+  assert.equal(some.stdout, 'octree change\n');
 });
 
 describe('real frames', { skip: existsSync(shared) ? false : `no ${shared}` }, () => {

@@ -4,7 +4,8 @@ import { assertProblem, firstAdmin, person } from './client.mjs';
 import { eventually, measuringRun, rigIdle, runReaches, watch } from './laboratory.mjs';
 import { startServer } from './server.mjs';
 
-const columns = 't_ns,object,status,x,y,z,qx,qy,qz,qw,sx,sy,sz,vx,vy,vz,wx,wy,wz';
+const columns = 't_ns,object,status,x,y,z,qx,qy,qz,qw,sx,sy,sz,vx,vy,vz,wx,wy,wz,'
+  + 'srx,sry,srz,radius,s_radius,half_angle,s_half_angle,points,inlier_share,rms_steps';
 
 test('a student runs the pendulum, watches it live and gets g', { timeout: 180_000 }, async (t) => {
   const server = await startServer(t);
@@ -31,7 +32,7 @@ test('a student runs the pendulum, watches it live and gets g', { timeout: 180_0
   const csv = await student.get(`/runs/${id}/poses.csv`);
   const lines = csv.body.trimEnd().split('\n');
   assert.equal(lines[0], columns);
-  assert.ok(lines.length - 1 >= 290 && lines.every((line) => line.split(',').length === 19));
+  assert.ok(lines.length - 1 >= 290 && lines.every((line) => line.split(',').length === 29));
   assert.match(csv.headers.get('content-disposition'), /filename="run-\d+-poses\.csv"/);
   const poses = (await student.get(`/runs/${id}/poses`)).body;
   assert.equal(poses.t_s.length, lines.length - 1);

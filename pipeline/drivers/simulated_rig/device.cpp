@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "pipeline/drivers/simulated_rig/properties.hpp"
+#include "pipeline/simulate/apparatus_text.hpp"
 
 namespace kinectlab::simulated_rig {
 namespace {
@@ -13,6 +15,16 @@ constexpr OniVersion kDriverVersion = {0, 1, 0, 0};
 
 OniStatus status_of(const Result<void>& result) {
     return result ? ONI_STATUS_OK : ONI_STATUS_BAD_PARAMETER;
+}
+
+BodyState to_state(const simulate::Body& body) {
+    BodyState state;
+    body.name.copy(state.name, sizeof(state.name) - 1);
+    Eigen::Map<Eigen::Vector3d>(state.p_lab_m) = body.p_lab;
+    Eigen::Map<Eigen::Vector4d>(state.q_lab_body) = body.q_lab_body.coeffs();
+    Eigen::Map<Eigen::Vector3d>(state.v_lab_m_s) = body.v_lab;
+    Eigen::Map<Eigen::Vector3d>(state.w_lab_rad_s) = body.w_lab;
+    return state;
 }
 
 void copy_row_major(const Eigen::Isometry3d& T, double (&out)[16]) {
@@ -67,8 +79,8 @@ void Device::destroyStream(oni::driver::StreamBase* gone) {
 OniStatus Device::setProperty(int id, const void* data, int size) {
     if (unplugged_) return ONI_STATUS_NO_DEVICE;
     switch (id) {
-        case kPendulum:
-            return set_pendulum(data, size);
+        case kApparatus:
+            return set_apparatus(data, size);
         case kActuator:
             return command_actuator(data, size);
         case kFault:
@@ -86,12 +98,8 @@ OniStatus Device::setProperty(int id, const void* data, int size) {
 OniStatus Device::getProperty(int id, void* data, int* size) {
     if (unplugged_) return ONI_STATUS_NO_DEVICE;
     switch (id) {
-        case kPendulum: {
-            const simulate::PendulumParameters p = rig_.pendulum();
-            const PendulumParameters parameters{
-                p.length_m, p.bob_radius_m, p.gravity_m_s2, p.latitude_deg, p.damping_per_s};
-            return give(parameters, data, size);
-        }
+        case kApparatus:
+            return give_text(simulate::to_text(rig_.apparatus()), data, size);
         case kState:
             return give(state(), data, size);
         case kGeometry:
@@ -114,15 +122,15 @@ OniStatus Device::getProperty(int id, void* data, int* size) {
 OniBool Device::isPropertySupported(int id) {
     return (id >= ONI_DEVICE_PROPERTY_FIRMWARE_VERSION && id <= ONI_DEVICE_PROPERTY_SERIAL_NUMBER
            ) ||
-           id == ONI_DEVICE_PROPERTY_IMAGE_REGISTRATION || (id >= kPendulum && id <= kFault);
+           id == ONI_DEVICE_PROPERTY_IMAGE_REGISTRATION || (id >= kApparatus && id <= kFault);
 }
 
-OniStatus Device::set_pendulum(const void* data, int size) {
-    PendulumParameters p;
-    if (!take(p, data, size)) return ONI_STATUS_BAD_PARAMETER;
-    return status_of(rig_.set_pendulum(
-        {p.length_m, p.bob_radius_m, p.gravity_m_s2, p.latitude_deg, p.damping_per_s}
-    ));
+OniStatus Device::set_apparatus(const void* data, int size) {
+    if (data == nullptr || size <= 0 || size > kLongestApparatus) return ONI_STATUS_BAD_PARAMETER;
+    const std::string_view text(static_cast<const char*>(data), static_cast<std::size_t>(size));
+    const auto settings = simulate::parse_apparatus(text);
+    if (!settings) return ONI_STATUS_BAD_PARAMETER;
+    return status_of(rig_.set_apparatus(*settings));
 }
 
 OniStatus Device::command_actuator(const void* data, int size) {
@@ -132,7 +140,7 @@ OniStatus Device::command_actuator(const void* data, int size) {
         case Action::stop:
             return status_of(rig_.apply({simulate::Action::stop, 0.0}));
         case Action::displace:
-            return status_of(rig_.apply({simulate::Action::displace, command.angle_rad}));
+            return status_of(rig_.apply({simulate::Action::displace, command.value}));
         case Action::hold:
             return status_of(rig_.apply({simulate::Action::hold, 0.0}));
         case Action::release:
@@ -162,10 +170,11 @@ RigState Device::state() const {
     RigState state;
     state.motion = static_cast<Motion>(truth.motion);
     state.device_time_s = truth.t_s;
-    state.angle_rad = truth.angle_rad;
-    state.bob_x_lab_m = truth.p_lab.x();
-    state.bob_y_lab_m = truth.p_lab.y();
-    state.bob_z_lab_m = truth.p_lab.z();
+    state.value = truth.value;
+    const std::size_t count = std::min(truth.bodies.size(), std::size(state.bodies));
+    state.body_count = static_cast<std::int32_t>(count);
+    for (std::size_t i = 0; i < count; ++i)
+        state.bodies[i] = to_state(truth.bodies[i]);
     return state;
 }
 

@@ -13,7 +13,7 @@
 
 namespace kinectlab::simulated_rig {
 
-/// One opened rig. Its pendulum starts at rest, and its clock at 0, when it is opened.
+/// One opened rig. It starts as a pendulum at rest, and its clock at 0, when it is opened.
 class Device : public oni::driver::DeviceBase {
 public:
     /// Asked to take the device off the list, and to put it back after so many seconds.
@@ -29,7 +29,7 @@ public:
     OniBool isPropertySupported(int id) override;
 
 private:
-    OniStatus set_pendulum(const void* data, int size);
+    OniStatus set_apparatus(const void* data, int size);
     OniStatus command_actuator(const void* data, int size);
     OniStatus set_fault(const void* data, int size);
     [[nodiscard]] RigState state() const;

@@ -3,55 +3,53 @@
 #include <cstdint>
 
 /// What the simulated rig's OpenNI2 device understands beyond the standard properties. Plain
-/// structs of doubles, passed with openni::Device::setProperty and getProperty.
+/// structs of doubles, and a text, passed with openni::Device::setProperty and getProperty.
 namespace kinectlab::simulated_rig {
 
 enum Property : int {
-    kPendulum = 0x4B4C0001,  ///< set/get PendulumParameters; takes effect at once, bob at rest
+    /// set/get "NAME PARAMETER=VALUE …", at most kLongestApparatus bytes, without a closing zero
+    /// when set; takes effect at once, at rest. Refused if the rig has no such apparatus, or that
+    /// does not take the values.
+    kApparatus = 0x4B4C0001,
     kActuator = 0x4B4C0002,  ///< set ActuatorCommand
     kState = 0x4B4C0003,     ///< get RigState
     kGeometry = 0x4B4C0004,  ///< get CameraGeometry
     kFault = 0x4B4C0005,     ///< set Fault, to try what happens when hardware fails
 };
 
-struct PendulumParameters {
-    double length_m = 1.0;  ///< pivot to the bob's centre
-    double bob_radius_m = 0.05;
-    double gravity_m_s2 = 9.81;
-    double latitude_deg = 45.0;
-    double damping_per_s = 0.002;  ///< amplitude decays as exp(-damping t)
-};
+constexpr int kLongestApparatus = 2048;
 
 enum class Action : std::int32_t {
-    stop = 0,      ///< brake the bob until it hangs at rest
-    displace = 1,  ///< bring the bob to angle_rad in the x-z plane of the lab, and hold it there
-    hold = 2,      ///< switch the electromagnet on where the bob is
-    release = 3,   ///< switch the electromagnet off
+    stop = 0,      ///< bring everything to rest
+    displace = 1,  ///< bring it to its start, displaced by the value, and hold it there
+    hold = 2,      ///< hold it where it is
+    release = 3,   ///< let it go
 };
 
 struct ActuatorCommand {
     Action action = Action::stop;
     std::int32_t reserved = 0;
-    double angle_rad = 0.0;
+    double value = 0.0;  ///< rad for the pendulum, m where something else can be displaced
 };
 
-enum class Motion : std::int32_t {
-    at_rest = 0,
-    moving_to_angle = 1,
-    held = 2,
-    swinging = 3,
-    braking = 4
+enum class Motion : std::int32_t { at_rest = 0, moving = 1, held = 2, free = 3, braking = 4 };
+
+/// Where a body's centre is in the lab frame, how it is turned, and how fast both change.
+struct BodyState {
+    char name[16] = {};  ///< with its closing zero
+    double p_lab_m[3] = {};
+    double q_lab_body[4] = {0.0, 0.0, 0.0, 1.0};  ///< x, y, z, w
+    double v_lab_m_s[3] = {};
+    double w_lab_rad_s[3] = {};
 };
 
 /// The truth at the time of the newest frame; tests compare with it, the pipeline never sees it.
 struct RigState {
     Motion motion = Motion::at_rest;
-    std::int32_t reserved = 0;
+    std::int32_t body_count = 0;
     double device_time_s = 0.0;
-    double angle_rad = 0.0;    ///< between the string and the vertical
-    double bob_x_lab_m = 0.0;  ///< bob's centre
-    double bob_y_lab_m = 0.0;
-    double bob_z_lab_m = 0.0;
+    double value = 0.0;  ///< of what displace sets, as it is now
+    BodyState bodies[4];
 };
 
 /// Both cameras and where the depth camera stands.

@@ -34,27 +34,27 @@ RigClock::~RigClock() {
     thread_.join();
 }
 
-Result<void> RigClock::set_pendulum(const simulate::PendulumParameters& parameters) {
+Result<void> RigClock::set_apparatus(const simulate::ApparatusSettings& apparatus) {
     simulate::RigSettings settings;
     {
         const auto lock = take_rig();
         settings = settings_;
     }
-    settings.pendulum = parameters;
+    settings.apparatus = apparatus;
     auto rig = simulate::SimulatedRig::create(settings);
     if (!rig) return tl::unexpected(rig.error());
     const auto lock = take_rig();
     rig->advance_to(rig_.truth().t_s);
     if (settings_.with_colour) rig->turn_on_colour();
     rig_ = std::move(*rig);
-    settings_.pendulum = parameters;
+    settings_.apparatus = apparatus;
     publish_truth();
     return {};
 }
 
-simulate::PendulumParameters RigClock::pendulum() const {
+simulate::ApparatusSettings RigClock::apparatus() const {
     const auto lock = take_rig();
-    return settings_.pendulum;
+    return settings_.apparatus;
 }
 
 Result<void> RigClock::apply(const simulate::Command& command) {

@@ -17,7 +17,7 @@ namespace kinectlab::simulated_rig {
 /// too far behind loses frames, which shows as a gap in the index.
 class RigClock {
 public:
-    /// True while anybody wants pictures; without, only the pendulum moves.
+    /// True while anybody wants pictures; without, only the apparatus moves.
     using Watched = std::function<bool()>;
     /// Called from the rig's thread, without any lock held.
     using Deliver = std::function<void(const RgbdFrame& frame)>;
@@ -30,9 +30,9 @@ public:
 
     // What follows may be called from any thread.
 
-    /// A new pendulum, at rest; costs the time of rendering the room once.
-    [[nodiscard]] Result<void> set_pendulum(const simulate::PendulumParameters& parameters);
-    [[nodiscard]] simulate::PendulumParameters pendulum() const;
+    /// Another apparatus, at rest; costs the time of rendering the room once.
+    [[nodiscard]] Result<void> set_apparatus(const simulate::ApparatusSettings& apparatus);
+    [[nodiscard]] simulate::ApparatusSettings apparatus() const;
 
     /// Takes effect with the next frame to be rendered.
     [[nodiscard]] Result<void> apply(const simulate::Command& command);

@@ -2,6 +2,8 @@
 
 #include <cstdlib>
 #include <filesystem>
+#include <fstream>
+#include <iterator>
 #include <memory>
 #include <stdexcept>
 
@@ -32,6 +34,12 @@ private:
 
 inline std::filesystem::path migrations() {
     return std::filesystem::path(KINECTLAB_SOURCE_DIR) / "migrations";
+}
+
+/// The definition that a pendulum's runs are made with.
+inline std::string pendulum_json() {
+    std::ifstream file(std::string(KINECTLAB_SOURCE_DIR) + "/server/experiments/pendulum.json");
+    return {std::istreambuf_iterator<char>(file), {}};
 }
 
 constexpr TimeNs kMinute = 60 * kNsPerSecond;
@@ -70,7 +78,7 @@ public:
             .user = booking.user,
             .booking = booking.id,
             .parameters = {{"length_m", 1.0}},
-            .definition_json = R"({"id": "pendulum"})",
+            .definition_json = pendulum_json(),
             .duration_s = 10.0,
             .created = now,
             .release_until = now + 5 * kMinute,

@@ -89,6 +89,17 @@ TEST(PendulumErrors, FewerThanThreePeriodsAfterTheRelease) {
     );
 }
 
+// Four to five seconds of a pendulum of two, after a rest: too short, and its length is right.
+TEST(PendulumErrors, TooShortASwingIsNotBlamedOnTheLength) {
+    for (const double seconds : {3.5, 4.0, 4.5, 5.0, 5.5}) {
+        const Swing swing{.amplitude_deg = 10.0, .seconds = seconds, .rest = 3.0, .held = 1.0};
+        const Error error = error_of(with_noise(generate(swing), 3));
+        EXPECT_THAT(error.message, Not(HasSubstr("given length"))) << seconds;
+        EXPECT_THAT(error.message, HasSubstr("period")) << seconds;
+        EXPECT_THAT(error.cure, HasSubstr("three periods")) << seconds;
+    }
+}
+
 TEST(PendulumErrors, NoMotion) {
     EXPECT_THAT(error_of(generate({.amplitude_deg = 0})).message, HasSubstr("does not swing"));
     for (unsigned seed = 1; seed <= 5; ++seed)

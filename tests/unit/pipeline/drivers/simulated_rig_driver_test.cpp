@@ -50,8 +50,19 @@ RigState state_of(const openni::Device& device) {
     return state;
 }
 
-openni::Status command(openni::Device& device, Action action, double angle_rad = 0.0) {
-    return device.setProperty(kActuator, ActuatorCommand{action, 0, angle_rad});
+openni::Status command(openni::Device& device, Action action, double value = 0.0) {
+    return device.setProperty(kActuator, ActuatorCommand{action, 0, value});
+}
+
+openni::Status make(openni::Device& device, const std::string& apparatus) {
+    return device.setProperty(kApparatus, apparatus.data(), static_cast<int>(apparatus.size()));
+}
+
+std::string apparatus_of(const openni::Device& device) {
+    std::string text(kLongestApparatus, '\0');
+    int size = kLongestApparatus;
+    EXPECT_EQ(device.getProperty(kApparatus, text.data(), &size), openni::STATUS_OK);
+    return text.c_str();
 }
 
 TEST_F(SimulatedRigDriver, IsListed) {
@@ -109,16 +120,16 @@ TEST_F(SimulatedRigDriver, ShowsTheBobWhereItIs) {
     ASSERT_EQ(command(device, Action::displace, 0.3), openni::STATUS_OK);
     ASSERT_TRUE(eventually([&] { return state_of(device).motion == Motion::held; }));
     const RigState held = state_of(device);
-    EXPECT_NEAR(held.bob_x_lab_m, std::sin(0.3), 1e-9);
+    EXPECT_NEAR(held.bodies[0].p_lab_m[0], std::sin(0.3), 1e-9);
 
     openni::VideoFrameRef frame;
     do {
         ASSERT_EQ(depth.readFrame(&frame), openni::STATUS_OK);
     } while (static_cast<double>(frame.getTimestamp()) * 1e-6 < held.device_time_s);
     // The camera is level and looks along +y: x_cam = x, y_cam = height - z, z_cam = distance + y.
-    const double x = held.bob_x_lab_m - geometry.T_lab_cam[3];
-    const double z = held.bob_y_lab_m - geometry.T_lab_cam[7];
-    const double y = geometry.T_lab_cam[11] - held.bob_z_lab_m;
+    const double x = held.bodies[0].p_lab_m[0] - geometry.T_lab_cam[3];
+    const double z = held.bodies[0].p_lab_m[1] - geometry.T_lab_cam[7];
+    const double y = geometry.T_lab_cam[11] - held.bodies[0].p_lab_m[2];
     const auto u = static_cast<int>(std::lround(geometry.depth_fx * x / z + geometry.depth_cx));
     const auto v = static_cast<int>(std::lround(geometry.depth_fy * y / z + geometry.depth_cy));
     const auto* pixels = static_cast<const std::uint16_t*>(frame.getData());
@@ -131,8 +142,8 @@ TEST_F(SimulatedRigDriver, ShowsTheBobWhereItIs) {
     EXPECT_NEAR(off, 0.05, 1e-3);
 
     ASSERT_EQ(command(device, Action::release), openni::STATUS_OK);
-    ASSERT_TRUE(eventually([&] { return state_of(device).motion == Motion::swinging; }));
-    ASSERT_TRUE(eventually([&] { return state_of(device).bob_x_lab_m < -0.1; }));
+    ASSERT_TRUE(eventually([&] { return state_of(device).motion == Motion::free; }));
+    ASSERT_TRUE(eventually([&] { return state_of(device).bodies[0].p_lab_m[0] < -0.1; }));
     ASSERT_EQ(command(device, Action::stop), openni::STATUS_OK);
     ASSERT_TRUE(eventually([&] { return state_of(device).motion == Motion::at_rest; }));
 }
@@ -140,15 +151,38 @@ TEST_F(SimulatedRigDriver, ShowsTheBobWhereItIs) {
 TEST_F(SimulatedRigDriver, TakesOverAnotherPendulum) {
     openni::Device device;
     ASSERT_EQ(device.open("sim://other?noise=none"), openni::STATUS_OK);
-    PendulumParameters parameters;
-    parameters.length_m = 1.5;
-    ASSERT_EQ(device.setProperty(kPendulum, parameters), openni::STATUS_OK);
-    PendulumParameters now;
-    int size = sizeof(now);
-    ASSERT_EQ(device.getProperty(kPendulum, &now, &size), openni::STATUS_OK);
-    EXPECT_EQ(now.length_m, 1.5);
-    parameters.length_m = -1.0;
-    EXPECT_EQ(device.setProperty(kPendulum, parameters), openni::STATUS_BAD_PARAMETER);
+    ASSERT_EQ(make(device, "pendulum length_m=1.5"), openni::STATUS_OK);
+    EXPECT_EQ(apparatus_of(device), "pendulum length_m=1.5");
+    EXPECT_EQ(make(device, "pendulum length_m=-1"), openni::STATUS_BAD_PARAMETER);
+    EXPECT_EQ(apparatus_of(device), "pendulum length_m=1.5");
+}
+
+TEST_F(SimulatedRigDriver, BecomesAnotherApparatus) {
+    openni::Device device;
+    ASSERT_EQ(device.open("sim://laboratory?noise=none"), openni::STATUS_OK);
+    EXPECT_EQ(apparatus_of(device), "pendulum");
+    ASSERT_EQ(make(device, "collision mass_a_kg=0.5 offset_m=0.02"), openni::STATUS_OK);
+    const RigState parked = state_of(device);
+    EXPECT_EQ(parked.motion, Motion::at_rest);
+    ASSERT_EQ(parked.body_count, 2);
+    EXPECT_STREQ(parked.bodies[0].name, "ball_a");
+    EXPECT_STREQ(parked.bodies[1].name, "ball_b");
+    EXPECT_LT(parked.bodies[0].p_lab_m[0], -1.5);
+    ASSERT_EQ(command(device, Action::displace), openni::STATUS_OK);
+    ASSERT_TRUE(eventually([&] { return state_of(device).motion == Motion::held; }));
+    EXPECT_NEAR(state_of(device).bodies[1].p_lab_m[1], 0.02, 1e-9);
+    ASSERT_EQ(command(device, Action::release), openni::STATUS_OK);
+    ASSERT_TRUE(eventually([&] { return state_of(device).bodies[1].v_lab_m_s[0] > 0.1; }));
+    for (const char* wrong :
+         {"colision",
+          "collision mass=1",
+          "collision mass_a_kg=1e9",
+          "collision mass_a_kg",
+          "",
+          "incline friction=nan"})
+        EXPECT_EQ(make(device, wrong), openni::STATUS_BAD_PARAMETER) << wrong;
+    const std::string endless(kLongestApparatus + 1, ' ');
+    EXPECT_EQ(make(device, "pendulum" + endless), openni::STATUS_BAD_PARAMETER);
 }
 
 TEST_F(SimulatedRigDriver, RefusesWhatItDoesNotUnderstand) {

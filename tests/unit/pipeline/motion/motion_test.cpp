@@ -129,6 +129,38 @@ TEST(Motion, GoesIntoTheLabWithItsCovariance) {
     EXPECT_NEAR(lab.sigma_p().z(), 1e-4, 1e-12);
 }
 
+TEST(Motion, UncertaintiesOfTheDerivativesAreTheirScatter) {
+    constexpr int kSeeds = 150;
+    constexpr std::size_t kMiddle = 10;
+    double v = 0.0, a = 0.0, w = 0.0;
+    MotionSample told;
+    for (unsigned seed = 1; seed <= kSeeds; ++seed) {
+        std::mt19937 random(seed);
+        std::normal_distribution<double> normal;
+        auto samples = swing(21, 0.5);
+        for (auto& s : samples) {
+            s.p_cam.z() += 2e-4 * normal(random);
+            s.q_cam_obj =
+                Eigen::AngleAxisd(1e-3 * normal(random), Eigen::Vector3d::UnitX()) * s.q_cam_obj;
+        }
+        told = motion_of(samples).samples[kMiddle];
+        v += told.v_lab.z() * told.v_lab.z() / kSeeds;
+        a += told.a_lab.z() * told.a_lab.z() / kSeeds;
+        w += told.w_lab.x() * told.w_lab.x() / kSeeds;
+    }
+    EXPECT_NEAR(told.sigma_v.z() / std::sqrt(v), 1.0, 0.2);
+    EXPECT_NEAR(told.sigma_a.z() / std::sqrt(a), 1.0, 0.2);
+    EXPECT_NEAR(told.sigma_w.x() / std::sqrt(w), 1.0, 0.2);
+    EXPECT_NEAR(told.sigma_v.x(), told.sigma_v.z() / 2.0, 1e-9) << "x is known twice as well";
+}
+
+TEST(Motion, WithoutACovarianceTheUncertaintyIsNotKnown) {
+    auto samples = swing(21);
+    samples[9].covariance.setZero();
+    EXPECT_TRUE(motion_of(samples).samples[10].sigma_v.array().isNaN().all());
+    EXPECT_TRUE(motion_of(samples).samples[10].v_lab.allFinite());
+}
+
 TEST(Motion, RepeatedTimesAreDropped) {
     auto samples = swing(10);
     samples.insert(samples.begin() + 5, samples[4]);

@@ -201,6 +201,15 @@ TEST(MeshFile, NothingLeftIsAnError) {
     EXPECT_FALSE(parse_obj(bytes_of("v nan nan nan\n"), "m").has_value());
     EXPECT_FALSE(parse_obj(bytes_of("v 0 0 0\nv 1 1 1\nv 2 2 2\nf 1 2 3\n"), "m").has_value());
     EXPECT_FALSE(parse_stl(bytes_of("solid nothing\nendsolid\n"), "m").has_value());
+    const auto blank = parse_pcd_points(
+        bytes_of("FIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 1\nWIDTH 2\nHEIGHT 1\n"
+                 "POINTS 2\nDATA ascii\nnan nan nan\nnan nan nan\n"),
+        "m.pcd"
+    );
+    ASSERT_FALSE(blank);
+    EXPECT_EQ(blank.error().message, "holds no reading: all 2 points are NaN");
+    const auto wild = parse_obj(bytes_of("v nan nan nan\nv inf 0 0\n"), "m");
+    EXPECT_NE(wild.error().message.find("all 2 "), std::string::npos) << wild.error().message;
 }
 
 TEST(MeshFile, SizesThatLookLikeMillimetresAreToldWithTheNumbers) {

@@ -18,6 +18,10 @@ using Clock = std::chrono::steady_clock;
 
 constexpr auto kLongEnough = 60s;  // far beyond what anything here takes
 
+bool make(OpenniSource& source, std::string_view apparatus) {
+    return source.set_property(simulated_rig::kApparatus, std::as_bytes(std::span(apparatus)));
+}
+
 template <class T>
 bool set(OpenniSource& source, int id, const T& value) {
     return source.set_property(id, std::as_bytes(std::span(&value, 1)));
@@ -112,15 +116,12 @@ TEST(OpenniSource, PropertiesPassThroughFromAnotherThread) {
     ASSERT_TRUE(source);
     bool fine = false;
     std::thread other([&] {
-        simulated_rig::PendulumParameters parameters;
-        parameters.length_m = 0.7;
-        fine = set(*source, simulated_rig::kPendulum, parameters);
-        parameters.length_m = 0.0;
+        fine = make(*source, "pendulum length_m=0.7");
+        std::string now(simulated_rig::kLongestApparatus, '?');
         fine =
-            fine && source->get_property(
-                        simulated_rig::kPendulum, std::as_writable_bytes(std::span(&parameters, 1))
-                    );
-        fine = fine && parameters.length_m == 0.7;
+            fine &&
+            source->get_property(simulated_rig::kApparatus, std::as_writable_bytes(std::span(now)));
+        fine = fine && std::string(now.c_str()) == "pendulum length_m=0.7";
     });
     RgbdFrame frame;
     EXPECT_TRUE(wait_for(*source, frame, FrameStatus::frame));
@@ -139,11 +140,11 @@ TEST(OpenniSource, ComesBackAfterItWasUnplugged) {
 
     ASSERT_TRUE(set(*source, simulated_rig::kFault, Fault{FaultKind::unplugged, 0, 1.5}));
     ASSERT_TRUE(wait_for(*source, frame, FrameStatus::disconnected));
-    EXPECT_FALSE(set(*source, simulated_rig::kPendulum, simulated_rig::PendulumParameters{}));
+    EXPECT_FALSE(make(*source, "pendulum"));
     ASSERT_TRUE(wait_for(*source, frame, FrameStatus::frame));
     EXPECT_GT(frame.t, last_t + kNsPerSecond);
     EXPECT_GT(frame.index, last_index + 20);  // what was missed shows as a gap
-    EXPECT_TRUE(set(*source, simulated_rig::kPendulum, simulated_rig::PendulumParameters{}));
+    EXPECT_TRUE(make(*source, "pendulum"));
     const TimeNs back = frame.t;
     ASSERT_TRUE(wait_for(*source, frame, FrameStatus::frame));
     EXPECT_GT(frame.t, back);

@@ -117,6 +117,8 @@ TEST(Pcd, RefusesWhatIsNoOrganisedCloud) {
     };
     EXPECT_THAT(error(header("ascii", 4, 1)), HasSubstr("not organised"));
     EXPECT_THAT(error(header("ascii", 5000, 2)), HasSubstr("4096"));
+    EXPECT_THAT(error(header("ascii", 0, 1)), HasSubstr("is empty"));
+    EXPECT_THAT(error(header("ascii", 0, 0)), HasSubstr("leave the file out"));
     EXPECT_THAT(error("hello"), HasSubstr("header"));
     EXPECT_THAT(error(header("zip")), HasSubstr("a.pcd:11"));
     std::string without_z = binary();
@@ -209,6 +211,84 @@ TEST(PcdSequence, RefusesACloudOfAnotherCamera) {
     const auto status = (*source)->next(frame, 1s);
     ASSERT_FALSE(status);
     EXPECT_THAT(status.error().cure, HasSubstr("camera.json"));
+}
+
+/// A wall across the axis of a camera of f = 20 px, in metres times `unit`.
+std::string wall(int side, float z, float unit = 1.0F) {
+    std::string file = "FIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 1\nWIDTH " +
+                       std::to_string(side) + "\nHEIGHT " + std::to_string(side) + "\nPOINTS " +
+                       std::to_string(side * side) + "\nDATA binary\n";
+    const float middle = 0.5F * static_cast<float>(side - 1);
+    for (int v = 0; v < side; ++v)
+        for (int u = 0; u < side; ++u) {
+            put(file, unit * z * (static_cast<float>(u) - middle) / 20.0F);
+            put(file, unit * z * (static_cast<float>(v) - middle) / 20.0F);
+            put(file, unit * z);
+        }
+    return file;
+}
+
+/// What reading a folder to its end gives: an error's text, or how many readings each frame has.
+std::string outcome_of(const std::filesystem::path& path) {
+    auto source = open_recording(path);
+    if (!source) return to_text(source.error());
+    std::string readings;
+    RgbdFrame frame;
+    while (true) {
+        const auto status = (*source)->next(frame, 1s);
+        if (!status) return to_text(status.error());
+        if (*status == FrameStatus::end) return readings;
+        const auto holes = std::count(frame.depth.begin(), frame.depth.end(), 0);
+        readings += std::to_string(static_cast<long>(frame.depth.size()) - holes) + " ";
+    }
+}
+
+constexpr const char* kLens = R"({"fx":20,"fy":20,"cx":7.5,"cy":7.5})";
+
+TEST(PcdSequence, NeedsNoDepthScale) {
+    const test::ScratchFolder scratch;
+    test::write_text(scratch / "camera.json", kLens);
+    test::write_text(scratch / "1.pcd", wall(16, 1.0F));
+    EXPECT_EQ(outcome_of(scratch.path()), "256 ");
+}
+
+TEST(PcdSequence, ACloudWithoutReadingsIsAFrameWithoutReadings) {
+    const test::ScratchFolder scratch;
+    test::write_text(scratch / "camera.json", kLens);
+    test::write_text(scratch / "1.pcd", wall(16, 1.0F));
+    test::write_text(scratch / "2.pcd", wall(16, std::nanf("")));
+    EXPECT_EQ(outcome_of(scratch.path()), "256 0 ");
+}
+
+TEST(PcdSequence, BadCloudsAreNamedWithTheirCure) {
+    struct Case {
+        std::string second;
+        const char* message;
+        const char* cure;
+    };
+    std::string empty = wall(16, 1.0F);
+    empty.replace(empty.find("WIDTH 16"), 8, "WIDTH 0");
+    for (const Case& c :
+         {Case{empty, "is empty: its header says 0x16 points", "leave the file out"},
+          Case{wall(20, 1.0F), "is 20x20, but the first, 1.pcd, is 16x16", "all of one size"},
+          Case{wall(16, 1.0F, 1000.0F), "the nearest is at z = 1000", "divide by 1000"}}) {
+        const test::ScratchFolder scratch;
+        test::write_text(scratch / "camera.json", kLens);
+        test::write_text(scratch / "1.pcd", wall(16, 1.0F));
+        test::write_text(scratch / "2.pcd", c.second);
+        const std::string outcome = outcome_of(scratch.path());
+        EXPECT_THAT(outcome, HasSubstr("2.pcd"));
+        EXPECT_THAT(outcome, HasSubstr(c.message));
+        EXPECT_THAT(outcome, HasSubstr(c.cure));
+    }
+}
+
+TEST(PcdSequence, EndingsMayBeInCapitals) {
+    const test::ScratchFolder scratch;
+    test::write_text(scratch / "camera.json", kLens);
+    test::write_text(scratch / "1.PCD", wall(16, 1.0F));
+    EXPECT_EQ(outcome_of(scratch.path()), "256 ");
+    EXPECT_EQ(outcome_of(scratch / "1.PCD"), "256 ");
 }
 
 }  // namespace

@@ -1,3 +1,5 @@
+#include "pipeline/sensor/tum_sequence.hpp"
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -113,6 +115,28 @@ TEST(TumSequence, WithoutColourReadsDepthAlone) {
     ASSERT_TRUE((*source)->next(frame, 1s));
     EXPECT_TRUE(frame.rgb.empty());
     EXPECT_EQ(frame.depth, frame_number(0).depth);
+}
+
+TEST(TumSequence, DamagedColourIsFoundWithoutDecodingIt) {
+    const ScratchFolder scratch;
+    write_recording(scratch / "r");
+    EXPECT_EQ(check_colour_pictures(scratch / "r").damaged, 0U);
+    EXPECT_EQ(check_colour_pictures(scratch / "r").all, 5U);
+    std::vector<std::filesystem::path> pictures;
+    for (const auto& entry : std::filesystem::directory_iterator(scratch / "r/rgb"))
+        pictures.push_back(entry.path());
+    ASSERT_EQ(pictures.size(), 5U);
+    std::string flipped = read_text(pictures[1]);
+    flipped[flipped.size() / 2] = static_cast<char>(flipped[flipped.size() / 2] ^ 1);
+    write_text(pictures[1], flipped);
+    EXPECT_EQ(check_colour_pictures(scratch / "r").damaged, 1U);
+    const std::string whole = read_text(pictures[3]);
+    write_text(pictures[3], whole.substr(0, whole.size() - 20));
+    const auto found = check_colour_pictures(scratch / "r");
+    EXPECT_EQ(found.damaged, 2U);
+    ASSERT_TRUE(found.first);
+    EXPECT_THAT(found.first->field, testing::HasSubstr(".png"));
+    EXPECT_THAT(found.first->message, testing::HasSubstr("damaged"));
 }
 
 struct Damage {

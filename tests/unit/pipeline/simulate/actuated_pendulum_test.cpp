@@ -20,35 +20,35 @@ TEST(ActuatedPendulum, HangsAtRestBelowThePivot) {
     ActuatedPendulum pendulum(PendulumParameters{}, kPivot);
     pendulum.advance_to(10.0);
     EXPECT_EQ(pendulum.truth().motion, Motion::at_rest);
-    EXPECT_TRUE(pendulum.truth().p_lab.isApprox(Eigen::Vector3d(0.0, 0.0, 0.9)));
+    EXPECT_TRUE(pendulum.truth().body().p_lab.isApprox(Eigen::Vector3d(0.0, 0.0, 0.9)));
 }
 
 TEST(ActuatedPendulum, MovesSmoothlyToItsAngleAndHoldsThere) {
     ActuatedPendulum pendulum(PendulumParameters{}, kPivot);
     ASSERT_TRUE(pendulum.apply({Action::displace, -0.3}));
-    EXPECT_EQ(pendulum.truth().motion, Motion::moving_to_angle);
+    EXPECT_EQ(pendulum.truth().motion, Motion::moving);
     double last_x = 0.0;
     for (int k = 1; k <= 90; ++k) {
         pendulum.advance_to(k / 30.0);
-        const double x = pendulum.truth().p_lab.x();
+        const double x = pendulum.truth().body().p_lab.x();
         EXPECT_LE(x, last_x + 1e-12);
         EXPECT_GT(x, last_x - 0.06);
         last_x = x;
     }
     EXPECT_EQ(pendulum.truth().motion, Motion::held);
-    EXPECT_NEAR(pendulum.truth().p_lab.x(), -std::sin(0.3), 1e-12);
-    EXPECT_NEAR(pendulum.truth().angle_rad, 0.3, 1e-12);
-    EXPECT_EQ(pendulum.truth().v_lab.norm(), 0.0);
+    EXPECT_NEAR(pendulum.truth().body().p_lab.x(), -std::sin(0.3), 1e-12);
+    EXPECT_NEAR(pendulum.truth().value, -0.3, 1e-12);
+    EXPECT_EQ(pendulum.truth().body().v_lab.norm(), 0.0);
 }
 
 TEST(ActuatedPendulum, StartsFromRestWhenReleased) {
     ActuatedPendulum pendulum = held_at(0.2);
     ASSERT_TRUE(pendulum.apply({Action::release, 0.0}));
-    EXPECT_EQ(pendulum.truth().motion, Motion::swinging);
+    EXPECT_EQ(pendulum.truth().motion, Motion::free);
     pendulum.advance_to(3.0 + 1e-3);
-    EXPECT_NEAR(pendulum.truth().angle_rad, 0.2, 2e-6);
+    EXPECT_NEAR(pendulum.truth().value, 0.2, 2e-6);
     pendulum.advance_to(4.0);
-    EXPECT_LT(pendulum.truth().p_lab.x(), 0.0);
+    EXPECT_LT(pendulum.truth().body().p_lab.x(), 0.0);
 }
 
 TEST(ActuatedPendulum, BrakesToRestWithinFourSeconds) {
@@ -59,10 +59,13 @@ TEST(ActuatedPendulum, BrakesToRestWithinFourSeconds) {
     ASSERT_TRUE(pendulum.apply({Action::stop, 0.0}));
     pendulum.advance_to(3.5 + 1e-4);
     // Position and velocity go on without a jump.
-    EXPECT_LT((pendulum.truth().p_lab - before.p_lab - 1e-4 * before.v_lab).norm(), 1e-6);
+    EXPECT_LT(
+        (pendulum.truth().body().p_lab - before.body().p_lab - 1e-4 * before.body().v_lab).norm(),
+        1e-6
+    );
     pendulum.advance_to(7.5);
     EXPECT_EQ(pendulum.truth().motion, Motion::at_rest);
-    EXPECT_TRUE(pendulum.truth().p_lab.isApprox(Eigen::Vector3d(0.0, 0.0, 0.9)));
+    EXPECT_TRUE(pendulum.truth().body().p_lab.isApprox(Eigen::Vector3d(0.0, 0.0, 0.9)));
 }
 
 TEST(ActuatedPendulum, HoldsWhereItIs) {
@@ -70,10 +73,10 @@ TEST(ActuatedPendulum, HoldsWhereItIs) {
     ASSERT_TRUE(pendulum.apply({Action::release, 0.0}));
     pendulum.advance_to(3.4);
     ASSERT_TRUE(pendulum.apply({Action::hold, 0.0}));
-    const Eigen::Vector3d there = pendulum.truth().p_lab;
+    const Eigen::Vector3d there = pendulum.truth().body().p_lab;
     pendulum.advance_to(5.0);
     EXPECT_EQ(pendulum.truth().motion, Motion::held);
-    EXPECT_EQ(pendulum.truth().p_lab, there);
+    EXPECT_EQ(pendulum.truth().body().p_lab, there);
 }
 
 TEST(ActuatedPendulum, RefusesAnglesOutOfReach) {
@@ -84,6 +87,19 @@ TEST(ActuatedPendulum, RefusesAnglesOutOfReach) {
         EXPECT_EQ(refused.error().field, "angle_rad");
     }
     EXPECT_EQ(pendulum.truth().motion, Motion::at_rest);
+}
+
+TEST(ActuatedPendulum, IsPushedAcrossItsPlaneAtTheRelease) {
+    PendulumParameters parameters;
+    parameters.sideways_m_s = 0.03;
+    ActuatedPendulum pendulum(parameters, kPivot);
+    ASSERT_TRUE(pendulum.apply({Action::displace, 0.2}));
+    pendulum.advance_to(3.0);
+    ASSERT_TRUE(pendulum.apply({Action::release}));
+    EXPECT_TRUE(pendulum.bodies().front().v_lab.isApprox(Eigen::Vector3d(0.0, 0.03, 0.0)));
+    const double quarter = 0.5 * std::acos(-1.0) / std::sqrt(9.81);
+    pendulum.advance_to(3.0 + quarter);
+    EXPECT_NEAR(pendulum.bodies().front().p_lab.y(), 0.03 / std::sqrt(9.81), 2e-4);
 }
 
 }  // namespace

@@ -179,5 +179,39 @@ TEST(Pendulum, NamesTheParameterThatIsWrong) {
     EXPECT_EQ(check(parameters).error().field, "latitude_deg");
 }
 
+TEST(Pendulum, AirAndStringChangeThePeriodAsTheTablesSay) {
+    const PendulumParameters bare = undamped();
+    PendulumParameters aired = bare;
+    aired.bob_density_kg_m3 = 500.0;
+    aired.air_density_kg_m3 = 1.2;
+    const double plain = measured_period(bare, 0.01);
+    const double air = 1.2 / 500.0;
+    const double extended = 1.0 + 0.4 * 0.05 * 0.05;  // (L² + 2/5 r²)/L² for L = 1 m
+    EXPECT_NEAR(
+        measured_period(aired, 0.01) / plain,
+        std::sqrt((1.0 + 0.5 * air / extended) / (1.0 - air)),
+        1e-8
+    );
+    PendulumParameters roped = bare;
+    roped.bob_density_kg_m3 = 7800.0;
+    roped.string_mass_kg = 0.02;
+    const double mass = 7800.0 * 4.0 / 3.0 * kPi * std::pow(0.05, 3);
+    const double share = 0.02 / mass;
+    EXPECT_NEAR(measured_period(roped, 0.01) / plain, 1.0 - share / 12.0, 2.0 * share * share);
+}
+
+TEST(Pendulum, QuadraticDragTakesEnergyWithTheCubeOfSpeed) {
+    PendulumParameters parameters = undamped();
+    parameters.quadratic_damping_per_rad = 0.05;
+    const PendulumEquation equation(parameters);
+    SwingState state = released_at(0.3);
+    for (int i = 0; i < 300; ++i)
+        state = equation.step(state, kStep);
+    const double before = equation.energy(state);
+    const double rate = state.n_dot.norm();
+    const SwingState next = equation.step(state, 1e-5);
+    EXPECT_NEAR((equation.energy(next) - before) / 1e-5, -0.05 * rate * rate * rate, 1e-5);
+}
+
 }  // namespace
 }  // namespace kinectlab::simulate

@@ -1,6 +1,7 @@
 #include "pipeline/simulate/simulated_rig.hpp"
 
 #include <cmath>
+#include <numbers>
 
 #include <gtest/gtest.h>
 
@@ -29,7 +30,7 @@ TEST(SimulatedRig, BobLiesWhereTheTruthSays) {
         rig.advance_to(3.7);
         RgbdFrame frame;
         rig.render(frame);
-        const Eigen::Vector3d centre_cam = rig.T_lab_cam().inverse() * rig.truth().p_lab;
+        const Eigen::Vector3d centre_cam = rig.T_lab_cam().inverse() * rig.truth().body().p_lab;
         const Pinhole& camera = rig.camera().depth;
         const Eigen::Vector2d uv = camera.project(centre_cam);
         for (const int du : {-8, 0, 8}) {
@@ -65,7 +66,7 @@ TEST(SimulatedRig, ColourCameraStandsBesideTheDepthCamera) {
     }
     ASSERT_GT(red, 500);
     const RgbdCamera& camera = rig.camera();
-    const Eigen::Vector3d centre_cam = rig.T_lab_cam().inverse() * rig.truth().p_lab;
+    const Eigen::Vector3d centre_cam = rig.T_lab_cam().inverse() * rig.truth().body().p_lab;
     const Eigen::Vector2d expected = camera.colour.project(camera.T_colour_depth * centre_cam);
     EXPECT_NEAR(u_sum / red, expected.x(), 1.0);
     EXPECT_NEAR(v_sum / red, expected.y(), 1.5);
@@ -109,11 +110,11 @@ TEST(SimulateRun, RestsDisplacesHoldsReleases) {
     });
     ASSERT_TRUE(summary);
     EXPECT_EQ(summary->frames, truths.size());
-    EXPECT_EQ(truths.size() - summary->first_swinging, 30U);
+    EXPECT_EQ(truths.size() - summary->first_free, 30U);
     EXPECT_EQ(truths.front().motion, Motion::at_rest);
-    EXPECT_EQ(truths[summary->first_swinging - 1].motion, Motion::held);
-    EXPECT_NEAR(truths[summary->first_swinging - 1].angle_rad, settings.amplitude_rad, 1e-12);
-    EXPECT_EQ(truths[summary->first_swinging].motion, Motion::swinging);
+    EXPECT_EQ(truths[summary->first_free - 1].motion, Motion::held);
+    EXPECT_NEAR(truths[summary->first_free - 1].value, std::numbers::pi / 18.0, 1e-12);
+    EXPECT_EQ(truths[summary->first_free].motion, Motion::free);
     EXPECT_NEAR(to_seconds(last), 5.0 + static_cast<double>(truths.size() - 1) / 30.0, 1e-8);
 }
 
@@ -126,13 +127,13 @@ TEST(SimulateRun, RefusesWhatMakesNoSense) {
         return summary ? std::string() : summary.error().field;
     };
     RunSettings settings;
-    settings.amplitude_rad = 2.0;
-    EXPECT_EQ(field_of(settings), "amplitude_deg");
+    settings.displacement = 2.0;
+    EXPECT_EQ(field_of(settings), "angle_rad");
     settings = {};
     settings.seconds = -1.0;
     EXPECT_EQ(field_of(settings), "seconds");
     settings = {};
-    settings.rig.pendulum.bob_radius_m = 0.9;
+    settings.rig.apparatus.parameters["bob_radius_m"] = 0.9;
     EXPECT_EQ(field_of(settings), "bob_radius_m");
     settings = {};
     settings.rig.camera.distance_m = 0.0;

@@ -2,9 +2,12 @@
 
 #include <limits>
 
+#include <Eigen/LU>
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "pipeline/run/chain.hpp"
+#include "pipeline/simulate/pendulum.hpp"
 #include "pipeline/simulate/simulate_run.hpp"
 #include "tests/unit/pipeline/support/textured_scene.hpp"
 
@@ -128,6 +131,138 @@ TEST(Colour, IsLostWhereItsColourIsNot) {
     EXPECT_EQ(sample_of(*here, blind).status, TrackStatus::lost);
 }
 
+/// Centroid of the box's visible surface, without noise.
+Eigen::Vector3d true_place(const PrintedBox& box) {
+    TexturedScene exact(1);
+    exact.sigma_steps = exact.edge_px = exact.colour_noise = 0.0;
+    const RgbdFrame frame = exact.frame({box});
+    const Pinhole& k = exact.camera.depth;
+    Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+    int points = 0;
+    for (int v = 0; v < k.height; ++v)
+        for (int u = 0; u < k.width; ++u) {
+            const auto reading = frame.depth[static_cast<std::size_t>(v * k.width + u)];
+            const double z = exact.camera.depth_unit_m * reading;
+            if (z > 0.9 * exact.wall_m) continue;
+            sum += k.ray(u, v) * z;
+            ++points;
+        }
+    return sum / points;
+}
+
+/// Mean over frames and seeds of eᵀ Σ⁻¹ e, which is 3 where Σ is what the error e scatters with.
+double normalised_error(std::uint32_t print, double motion_m) {
+    double sum = 0.0;
+    int count = 0;
+    for (unsigned seed = 1; seed <= 3; ++seed) {
+        TexturedScene scene(seed);
+        const auto box_at = [&](int i) {
+            PrintedBox box = plain_box(-0.08 + motion_m * i + 0.013 * seed, 0.1 + 0.1 * seed);
+            box.print = print;
+            return box;
+        };
+        auto tracker = tracker_for(scene.camera, click_on(scene, box_at(0)));
+        for (int i = 0; i < 12; ++i) {
+            const TrackSample sample = sample_of(*tracker, scene.frame({box_at(i)}));
+            EXPECT_EQ(sample.status, TrackStatus::tracked) << sample.quality.why_lost;
+            if (sample.status != TrackStatus::tracked) continue;
+            const Eigen::Vector3d off = sample.p_cam - true_place(box_at(i));
+            const Eigen::Matrix3d covariance = sample.covariance.topLeftCorner<3, 3>();
+            sum += off.dot(covariance.inverse() * off);
+            ++count;
+            EXPECT_LT(off.norm(), 0.002) << off.transpose();
+        }
+    }
+    return sum / count;
+}
+
+TEST(Colour, CovarianceCoversTheErrorAtRest) {
+    const double error = normalised_error(0, 0.0);
+    EXPECT_GT(error, 0.5);
+    EXPECT_LT(error, 6.0);
+}
+
+TEST(Colour, CovarianceCoversTheErrorInMotion) {
+    const double error = normalised_error(0, 0.007);
+    EXPECT_GT(error, 0.5);
+    EXPECT_LT(error, 6.0);
+}
+
+TEST(Colour, AGreyThingCanBeLearnedWhereItsSurroundingsAreNot) {
+    TexturedScene scene(1, 2);
+    PrintedBox black = plain_box(0.0, 0.0);
+    black.colour = {30.0, 30.0, 30.0};
+    auto tracker = tracker_for(scene.camera, click_on(scene, black));
+    const TrackSample sample = sample_of(*tracker, scene.frame({black}));
+    ASSERT_EQ(sample.status, TrackStatus::tracked) << sample.quality.why_lost;
+    EXPECT_NEAR(sample.p_cam.z(), 1.08, 0.01);
+}
+
+/// What the tracker says of a click on a scene, once.
+std::string fault_of(TexturedScene& scene, const ColourSettings& settings, const RgbdFrame& frame) {
+    auto tracker = tracker_for(scene.camera, settings);
+    const TrackSample sample = sample_of(*tracker, frame);
+    EXPECT_EQ(sample.status, TrackStatus::lost);
+    EXPECT_EQ(sample.quality.why_lost, "its colour could not be learned");
+    const auto fault = tracker->take_fault();
+    EXPECT_FALSE(tracker->take_fault()) << "told once";
+    EXPECT_TRUE(fault && !fault->cure.empty());
+    return fault ? fault->field + ": " + fault->message : std::string();
+}
+
+TEST(Colour, SaysWhyAClickCannotBeLearned) {
+    TexturedScene scene(1, 2);
+    const PrintedBox box = plain_box(0.0, 0.0);
+    RgbdFrame frame = scene.frame({box});
+    ColourSettings wall;
+    wall.box = PictureBox{20, 20, 1, 1};
+    EXPECT_THAT(
+        fault_of(scene, wall, frame),
+        testing::HasSubstr("objects[0].click: shows a surface that fills")
+    );
+    wall.box = PictureBox{20, 20, 40, 40};
+    EXPECT_THAT(
+        fault_of(scene, wall, frame),
+        testing::HasSubstr("objects[0].box: shows nothing but colours")
+    );
+    const ColourSettings click = click_on(scene, box);
+    std::fill(frame.depth.begin(), frame.depth.end(), 0);
+    EXPECT_THAT(
+        fault_of(scene, click, frame),
+        testing::HasSubstr("objects[0].click: lies where the camera reads no depth")
+    );
+}
+
+TEST(Colour, TheChainRefusesAClickThatCannotBeLearned) {
+    TexturedScene scene(1, 2);
+    ColourSettings wall;
+    wall.box = PictureBox{20, 20, 1, 1};
+    auto chain = Chain::create({scene.camera, {{"wall", wall}}});
+    ASSERT_TRUE(chain);
+    const RgbdFrame frame = scene.frame({});
+    ASSERT_TRUE(chain->learn(frame));
+    const auto refused = chain->track(frame);
+    ASSERT_FALSE(refused);
+    EXPECT_EQ(refused.error().field, "objects[0].click");
+}
+
+TEST(Colour, SaysWhyAThingIsLost) {
+    TexturedScene scene(1, 2);
+    const PrintedBox box = plain_box(0.0, 0.0);
+    ColourSettings settings = click_on(scene, box);
+    auto tracker = tracker_for(scene.camera, settings);
+    EXPECT_TRUE(sample_of(*tracker, scene.frame({box})).quality.why_lost.empty());
+    EXPECT_EQ(
+        sample_of(*tracker, scene.frame({})).quality.why_lost,
+        "its colour is not seen where it could be"
+    );
+    settings.learn_at_s = 1.0;
+    auto later = tracker_for(scene.camera, settings);
+    EXPECT_EQ(
+        sample_of(*later, scene.frame({box})).quality.why_lost, "its colour is not learned yet"
+    );
+}
+
 TEST(Colour, FollowsASimulatedPendulum) {
     simulate::RunSettings run;
     run.seconds = 0.7;
@@ -139,13 +274,14 @@ TEST(Colour, FollowsASimulatedPendulum) {
     auto tracker = tracker_for(rig->camera(), red);
     int swinging = 0;
     const auto sink = [&](const RgbdFrame& frame, const simulate::Truth& truth) -> Result<void> {
-        if (truth.motion != simulate::Motion::swinging || frame.index % 3 != 0) return {};
+        if (truth.motion != simulate::Motion::free || frame.index % 3 != 0) return {};
         const TrackSample sample = sample_of(*tracker, frame);
         EXPECT_EQ(sample.status, TrackStatus::tracked);
         // A ball shows its front: two thirds of the radius before its centre.
-        const Eigen::Vector3d centre_cam = T_cam_lab * truth.p_lab;
+        const Eigen::Vector3d centre_cam = T_cam_lab * truth.body().p_lab;
         const Eigen::Vector3d front_cam =
-            centre_cam - 2.0 / 3.0 * run.rig.pendulum.bob_radius_m * centre_cam.normalized();
+            centre_cam -
+            2.0 / 3.0 * simulate::PendulumParameters().bob_radius_m * centre_cam.normalized();
         EXPECT_LT((sample.p_cam - front_cam).norm(), 0.007) << frame.index;
         EXPECT_FALSE(sample.has_orientation) << "a ball shows none";
         ++swinging;

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "pipeline/track/shape_detect.hpp"
 #include "tests/unit/pipeline/support/shape_room.hpp"
 
 namespace kinectlab {
@@ -45,6 +46,36 @@ TEST(Hough, FindsABallOfKnownAndOfUnknownRadius) {
     ASSERT_FALSE(best.empty());
     EXPECT_LT((best[0].shape.point - centre).norm(), 0.02);
     EXPECT_NEAR(best[0].shape.size, 0.09, 0.015);
+}
+
+TEST(Hough, FindsABallInASceneByTheRadiiThatAreTheDefault) {
+    for (const double radius : {0.03, 0.05, 0.08, 0.12}) {
+        test::ShapeRoom room(3);
+        const Eigen::Vector3d centre(0.1, -0.05, 0.9);
+        room.solids = {
+            test::wall({0, 0.5, 0}, {0, -1, -0.1}),
+            test::wall({0, 0, 2.8}, {0.2, 0, -1}),
+            test::ball(centre, radius)};
+        DisparityImage image(room.camera);
+        image.load(room.frame().depth);
+        const SphereSettings defaults;
+        ShapeTarget target{
+            0, ShapeKind::sphere, {{}, defaults.min_radius_m, defaults.max_radius_m}};
+        target.in = LookIn::scene;
+        target.search = GuessBy::hough;
+        SegmentShapes detector(room.camera);
+        const auto found = detector.in_scene(image, target);
+        ASSERT_TRUE(found) << radius;
+        EXPECT_LT((found->shape.point - centre).norm(), 1e-3) << radius;
+        EXPECT_NEAR(found->shape.size, radius, 1e-3);
+
+        room.solids.pop_back();
+        room.changed();
+        image.load(room.frame().depth);
+        EXPECT_FALSE(detector.in_scene(image, target)) << "no ball is left";
+        target.limits.known = radius;
+        EXPECT_FALSE(detector.in_scene(image, target)) << "nor one of " << radius;
+    }
 }
 
 TEST(Hough, FewPointsAreNothing) {

@@ -1,5 +1,7 @@
 #include "pipeline/track/shape_tracker.hpp"
 
+#include <cmath>
+
 #include <gtest/gtest.h>
 
 #include "tests/unit/pipeline/support/shape_room.hpp"
@@ -82,6 +84,14 @@ TEST(ShapeTracker, FollowsEachKindAmongWhatMoved) {
     EXPECT_LT((samples[2].p_cam - board.place).norm(), 0.01);
 
     EXPECT_LT((samples[3].p_cam - room.solids[3].place).norm(), 0.003);
+
+    // Each with the size that is its own and no other.
+    EXPECT_NEAR(samples[0].size.radius_m, 0.045, 5.0 * samples[0].size.radius_u);
+    EXPECT_NEAR(samples[1].size.half_angle_rad, kKnownAngle, 5.0 * samples[1].size.half_angle_u);
+    EXPECT_NEAR(samples[3].size.radius_m, 0.06, 5.0 * samples[3].size.radius_u);
+    EXPECT_TRUE(std::isnan(samples[0].size.half_angle_rad));
+    EXPECT_TRUE(std::isnan(samples[1].size.radius_m));
+    EXPECT_TRUE(std::isnan(samples[2].size.radius_m));
 }
 
 TEST(ShapeTracker, TakesNoThingForAnother) {
@@ -104,7 +114,9 @@ TEST(ShapeTracker, AKnownSizeIsKept) {
     ShapeRoom room = four_things();
     const RgbdFrame frame = room.frame();
     const auto can = tracker_for(room.camera, object("can", CylinderSettings{.radius_m = 0.045}));
-    EXPECT_EQ(track(*can, frame, {room.pixels_of(0)}).at(0).status, TrackStatus::tracked);
+    const auto known = track(*can, frame, {room.pixels_of(0)}).at(0);
+    EXPECT_EQ(known.status, TrackStatus::tracked);
+    EXPECT_TRUE(std::isnan(known.size.radius_m)) << "what was given is no measurement";
     const auto cone =
         tracker_for(room.camera, object("cone", ConeSettings{.half_angle_rad = kKnownAngle}));
     const auto sample = track(*cone, frame, {room.pixels_of(1)}).at(0);

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <filesystem>
 #include <iostream>
 
@@ -39,6 +40,36 @@ protected:
     std::vector<Labelled> labelled;
     test::OsdAgreement agrees;
 };
+
+/// What stands round in each frame, by its label. Written down from the colour pictures, in which
+/// every thing can be told by eye, with the labels laid over them: tins, cans and mugs, one of the
+/// tins lying on its side (learn38, 40), and the outer sides of two plastic pots. All else is flat:
+/// cartons, the table, lids. The bowl of learn33 (40 and 41) is a piece of a ball and no ball, the
+/// carton of test47 (70) has a bent front; neither is any of the four shapes. No frame has a ball
+/// or a cone.
+std::vector<std::uint32_t> round_things(const std::string& frame) {
+    if (frame == "learn33") return {20, 30, 50, 61};
+    if (frame == "learn38") return {20, 30, 40, 50};
+    if (frame == "test31") return {20, 30, 40};
+    if (frame == "test33") return {20, 30, 40, 50};
+    if (frame == "test36") return {20, 30, 40};
+    if (frame == "test47") return {20, 40};
+    return {};  // learn5, test0: two cartons each
+}
+
+TEST_P(ShapesReal, RoundIsWhatIsRoundAndNothingElse) {
+    if (!load()) GTEST_SKIP() << "no osd_" << GetParam() << ".pcd in " << folder();
+    std::vector<std::uint32_t> found;
+    for (const auto& one : labelled) {
+        const ShapeKind kind = one.shape->fit.shape.kind;
+        if (kind == ShapeKind::plane) continue;
+        EXPECT_EQ(kind, ShapeKind::cylinder)
+            << "a " << name_of(kind) << " on the thing with label " << one.label;
+        found.push_back(one.label);
+    }
+    std::sort(found.begin(), found.end());
+    EXPECT_EQ(found, round_things(GetParam()));
+}
 
 TEST_P(ShapesReal, TableCansAndBoxesAgreeWithTheLabels) {
     if (!load()) GTEST_SKIP() << "no osd_" << GetParam() << ".pcd in " << folder();

@@ -1,5 +1,7 @@
 #include "pipeline/track/shapes.hpp"
 
+#include <random>
+
 #include <gtest/gtest.h>
 
 #include "tests/unit/pipeline/support/shape_room.hpp"
@@ -101,6 +103,69 @@ TEST(Shapes, ABoxIsThreePlanesAtRightAngles) {
     for (std::size_t i = 1; i < 4; ++i)
         for (std::size_t j = i + 1; j < 4; ++j)
             EXPECT_LT(std::abs(shapes[i].fit.shape.axis.dot(shapes[j].fit.shape.axis)), 0.01);
+}
+
+/// Things on a table with the noise of a Kinect, whole millimetres included.
+ShapeRoom table_with(unsigned seed, bool boxes) {
+    ShapeRoom room(seed);
+    room.camera.depth_unit_m = 0.001;
+    const Eigen::Vector3d up = Eigen::Vector3d(0.0, -0.8, -0.6).normalized();
+    const Eigen::Vector3d x = Eigen::Vector3d::UnitX(), back = up.cross(x), foot(0.0, 0.2, 1.1);
+    room.solids = {test::wall(foot, up)};
+    std::mt19937 random(seed);
+    std::uniform_real_distribution<double> part;
+    for (int i = 0; i < 3; ++i) {
+        const Eigen::Vector3d place = foot + (0.28 * (i - 1)) * x + 0.1 * part(random) * back;
+        if (boxes) {
+            const Eigen::Vector3d half(
+                0.03 + 0.06 * part(random), 0.03 + 0.06 * part(random), 0.03 + 0.09 * part(random)
+            );
+            Eigen::Matrix3d frame;
+            frame << x, back, up;
+            const Eigen::AngleAxisd turn(3.0 * part(random), up);
+            room.solids.push_back(test::box(place + half.z() * up, turn * frame, half));
+        } else {
+            const double radius = 0.03 + 0.06 * part(random), height = 0.08 + 0.15 * part(random);
+            room.solids.push_back(test::can(place, up, radius, height));
+        }
+    }
+    return room;
+}
+
+TEST(Shapes, OnlyBoxesAreOnlyPlanes) {
+    for (unsigned seed = 1; seed <= 12; ++seed) {
+        ShapeRoom room = table_with(seed, true);
+        auto detector = detector_for(room.camera);
+        for (const auto& shape : detector.detect(room.frame().depth))
+            EXPECT_EQ(shape.fit.shape.kind, ShapeKind::plane) << "seed " << seed;
+    }
+}
+
+TEST(Shapes, OnlyCansAreCylindersAndTheirLids) {
+    for (unsigned seed = 1; seed <= 12; ++seed) {
+        ShapeRoom room = table_with(seed, false);
+        auto detector = detector_for(room.camera);
+        int cylinders = 0;
+        for (const auto& shape : detector.detect(room.frame().depth)) {
+            const ShapeKind kind = shape.fit.shape.kind;
+            EXPECT_TRUE(kind == ShapeKind::plane || kind == ShapeKind::cylinder) << "seed " << seed;
+            cylinders += kind == ShapeKind::cylinder ? 1 : 0;
+        }
+        EXPECT_EQ(cylinders, 3) << "seed " << seed;
+    }
+}
+
+TEST(Shapes, ABallHalfHiddenIsABall) {
+    ShapeRoom room(7);
+    room.solids = {
+        test::wall({0, 0, 2.4}, {0, 0, -1}),
+        test::ball({0.2, 0.05, 1.0}, 0.08),
+        test::box({0.22, 0.05, 0.8}, Eigen::Matrix3d::Identity(), {0.06, 0.1, 0.02})};
+    auto detector = detector_for(room.camera);
+    int balls = 0;
+    for (const auto& shape : detector.detect(room.frame().depth))
+        balls += shape.fit.shape.kind == ShapeKind::sphere ? 1 : 0;
+    EXPECT_EQ(balls, 1);
 }
 
 TEST(Shapes, TheSamePictureGivesTheSameShapes) {

@@ -48,7 +48,7 @@ TEST(Query, NamesWhatIsWrong) {
     EXPECT_EQ(query_flag(request, "mine").error().field, "mine");
     const auto unknown = check_query(request, {"limit", "mine", "before"});
     EXPECT_EQ(unknown.error().field, "befor");
-    EXPECT_EQ(unknown.error().cure, "did you mean before?");
+    EXPECT_EQ(unknown.error().cure, "did you mean before? Valid: limit, mine, before");
     EXPECT_FALSE(query_integer(request, "other", 1, 2)->has_value());
     request.repeated = "limit";
     EXPECT_EQ(check_query(request, {"limit", "mine", "befor"}).error().field, "limit");

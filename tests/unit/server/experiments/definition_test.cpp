@@ -14,7 +14,7 @@ namespace {
 using testing::HasSubstr;
 
 Definition pendulum() {
-    auto definition = load_definition(experiments::share_dir() / "experiments", "pendulum");
+    auto definition = load_definition(share_dir() / "experiments", "pendulum");
     EXPECT_TRUE(definition) << to_text(definition.error());
     return definition.value_or(Definition{});
 }
@@ -93,9 +93,132 @@ TEST(Definition, ErrorsNameTheJsonPath) {
 }
 
 TEST(Definition, AnUnknownExperimentNamesTheNearest) {
-    const auto definition = load_definition(experiments::share_dir() / "experiments", "pendulm");
+    const auto definition = load_definition(share_dir() / "experiments", "pendulm");
     ASSERT_FALSE(definition);
     EXPECT_THAT(definition.error().cure, HasSubstr("pendulum"));
+}
+
+nlohmann::json pendulum_document() {
+    return to_json(pendulum());
+}
+
+/// The error that a changed definition is refused with; fails the test where it is taken.
+template <class Change>
+Error refusal(Change&& change) {
+    auto document = pendulum_document();
+    change(document);
+    const auto definition = read_with_schema(document);
+    EXPECT_FALSE(definition) << document.dump();
+    return definition ? Error{} : definition.error();
+}
+
+TEST(Definition, AUnitThatDoesNotFitTheNameIsRefused) {
+    const auto error = refusal([](auto& d) { d["parameters"][0]["unit"] = "cm"; });
+    EXPECT_EQ(error.field, "parameters[0].unit");
+    EXPECT_THAT(error.message, HasSubstr("cm"));
+}
+
+TEST(Definition, AnAnalysisThatDoesNotFitTheObjectsIsRefused) {
+    const auto error = refusal([](auto& d) {
+        d["objects"].push_back({{"name", "other"}, {"method", "sphere"}});
+        d["analysis"].erase("objects");
+    });
+    EXPECT_EQ(error.field, "analysis.objects");
+    EXPECT_THAT(error.message, HasSubstr("takes 1"));
+}
+
+TEST(Definition, NamesThatNothingHasAreRefusedWithTheNearest) {
+    EXPECT_EQ(
+        refusal([](auto& d) { d["analysis"]["method"] = "pendlum"; }).field, "analysis.method"
+    );
+    EXPECT_EQ(
+        refusal([](auto& d) { d["analysis"]["settings"]["lenght_m"] = 1; }).field,
+        "analysis.settings.lenght_m"
+    );
+    EXPECT_EQ(
+        refusal([](auto& d) { d["sequence"][4]["to"]["parameter"] = "amplitude"; }).field,
+        "sequence[4].to.parameter"
+    );
+    EXPECT_EQ(refusal([](auto& d) { d["plots"][0] = "postion"; }).field, "plots[0]");
+    EXPECT_EQ(
+        refusal([](auto& d) { d["acceptance"][0]["fact"] = "perids"; }).field, "acceptance[0].fact"
+    );
+    const auto step = refusal([](auto& d) { d["sequence"][0]["do"] = "halt"; });
+    EXPECT_EQ(step.field, "sequence[0].do");
+}
+
+TEST(Definition, AnalysisSettingsMustHaveTheRightUnitAndRange) {
+    EXPECT_EQ(
+        refusal([](auto& d) {
+            d["analysis"]["settings"]["length_m"] = {{"parameter", "duration_s"}};
+        }).field,
+        "analysis.settings.length_m.parameter"
+    );
+    EXPECT_EQ(
+        refusal([](auto& d) { d["analysis"]["settings"]["length_m"] = -1; }).field,
+        "analysis.settings.length_m"
+    );
+}
+
+TEST(Definition, TheSceneHasToBeLearned) {
+    const auto error = refusal([](auto& d) {
+        for (auto& step : d["sequence"])
+            step.erase("learn");
+    });
+    EXPECT_EQ(error.field, "sequence");
+}
+
+TEST(Definition, TextThatCouldCarryMoreThanTextIsRefusedWithItsPlace) {
+    for (const char* text :
+         {"one\ntwo <script>alert(1)</script>",
+          "a </p>",
+          "a [link](https://example.org)",
+          "$\\href{javascript:alert(1)}{x}$",
+          "$\\def\\x{1}$",
+          "$\\includegraphics{a}$",
+          "$x$ and $y",
+          "a\x01b"}) {
+        const auto error = refusal([&](auto& d) { d["theory"] = text; });
+        EXPECT_EQ(error.field, "theory") << text;
+        EXPECT_THAT(error.message, HasSubstr("line ")) << text;
+    }
+    auto document = pendulum_document();
+    document["theory"] = "If a < b then $\\frac{a}{b} < 1$.\n\n$$\\sqrt{x}\\,\\alpha$$";
+    EXPECT_TRUE(read_with_schema(document));
+}
+
+TEST(Definition, TheSchemaRefusesWhatNoOtherCheckLooksAt) {
+    EXPECT_EQ(refusal([](auto& d) { d["id"] = "../etc/passwd"; }).field, "[\"id\"]");
+    EXPECT_FALSE(refusal([](auto& d) { d["title"] = std::string(500, 'x'); }).message.empty());
+}
+
+TEST(Definition, AParameterWithoutDefaultIsGivenOnlyIfSomebodyGivesIt) {
+    auto document = pendulum_document();
+    document["parameters"].push_back(
+        {{"name", "string_mass_kg"},
+         {"unit", "kg"},
+         {"min", 0},
+         {"max", 1},
+         {"step", 0.001},
+         {"default", nullptr},
+         {"help", "Of the string."}}
+    );
+    const auto definition = read_with_schema(document);
+    ASSERT_TRUE(definition) << to_text(definition.error());
+    EXPECT_FALSE(validate(*definition, {})->contains("string_mass_kg"));
+    EXPECT_EQ(validate(*definition, {{"string_mass_kg", 0.01}})->at("string_mass_kg"), 0.01);
+}
+
+TEST(Definition, AllThatComeWithTheProgramAreRight) {
+    const auto all = load_definitions(share_dir() / "experiments");
+    ASSERT_TRUE(all) << to_text(all.error());
+    for (const auto& definition : *all) {
+        const auto values = validate(definition, {});
+        ASSERT_TRUE(values) << definition.id << ": " << to_text(values.error());
+        EXPECT_EQ(plan_for(definition, *values).objects.size(), definition.objects.size());
+        EXPECT_FALSE(definition.theory.empty()) << definition.id;
+        EXPECT_TRUE(value_of(definition.duration, *values)) << definition.id;
+    }
 }
 
 }  // namespace

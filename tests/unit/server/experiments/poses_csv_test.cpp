@@ -31,19 +31,24 @@ MotionSample sample() {
     s.covariance.diagonal().setConstant(4e-6);
     s.v_lab = {1, 2, 3};
     s.w_lab = {4, 5, 6};
+    s.quality = {1200, 0.9, 0.6};
+    s.size.radius_m = 0.05;
+    s.size.radius_u = 0.001;
     return s;
 }
 
 TEST(PosesCsv, HasTheColumnsOfTheContract) {
     EXPECT_EQ(
-        poses_csv_header(), "t_ns,object,status,x,y,z,qx,qy,qz,qw,sx,sy,sz,vx,vy,vz,wx,wy,wz\n"
+        poses_csv_header(),
+        "t_ns,object,status,x,y,z,qx,qy,qz,qw,sx,sy,sz,vx,vy,vz,wx,wy,wz,"
+        "srx,sry,srz,radius,s_radius,half_angle,s_half_angle,points,inlier_share,rms_steps\n"
     );
     std::string csv;
     append_pose_row(csv, "bob", sample());
     EXPECT_EQ(
         csv,
         "1767225600033333333,bob,tracked,0.1,-0.2,1e-17,0.1,0.2,0.3,0.5,0.002,0.002,0.002,"
-        "1,2,3,4,5,6\n"
+        "1,2,3,4,5,6,0.002,0.002,0.002,0.05,0.001,,,1200,0.9,0.6\n"
     );
 }
 
@@ -52,7 +57,7 @@ TEST(PosesCsv, WhatWasNotMeasuredIsEmpty) {
     lost.status = TrackStatus::lost;
     std::string csv;
     append_pose_row(csv, "bob", lost);
-    EXPECT_EQ(csv, "1767225600033333333,bob,lost,,,,,,,,,,,,,,,,\n");
+    EXPECT_EQ(csv, "1767225600033333333,bob,lost" + std::string(26, ',') + "\n");
 
     MotionSample ball = sample();
     ball.has_orientation = false;
@@ -60,10 +65,20 @@ TEST(PosesCsv, WhatWasNotMeasuredIsEmpty) {
     csv.clear();
     append_pose_row(csv, "bob", ball);
     const auto cells = cells_of(csv);
-    ASSERT_EQ(cells.size(), 19u);
-    for (const std::size_t column : {6, 7, 8, 9, 13, 14, 15, 16, 17, 18})
+    ASSERT_EQ(cells.size(), 29u);
+    for (const std::size_t column : {6, 7, 8, 9, 13, 14, 15, 16, 17, 18, 19, 20, 21})
         EXPECT_EQ(cells[column], "") << column;
     EXPECT_EQ(cells[3], "0.1");
+    EXPECT_EQ(cells[22], "0.05");
+
+    MotionSample filled = sample();
+    filled.status = TrackStatus::interpolated;
+    filled.covariance.bottomRightCorner<3, 3>().setZero();  // as the laboratory keeps it
+    csv.clear();
+    append_pose_row(csv, "bob", filled);
+    const auto between = cells_of(csv);
+    for (std::size_t column = 19; column < 29; ++column)
+        EXPECT_EQ(between[column], "") << column;
 }
 
 RC_GTEST_PROP(PosesCsv, NumbersComeBackExactly, (double x, double y)) {

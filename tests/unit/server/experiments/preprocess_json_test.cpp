@@ -35,7 +35,7 @@ TEST(Preprocess, EveryStageHasItsMethods) {
         "smoothing": {"method": "moving_least_squares", "order": 1, "radius_m": 0.03},
         "depth_cut": {"method": "fixed", "farthest_m": 2.5},
         "reference": {"method": "rolling", "seconds": 5},
-        "change": {"method": "octree", "voxel_m": 0.04, "least_points": 3},
+        "change": {"method": "octree", "voxel_m": 0.04, "least_points": 3, "threshold_steps": 5},
         "segments": {"min_points": 100}})");
     ASSERT_TRUE(settings) << to_text(settings.error());
     EXPECT_EQ(settings->outliers->neighbours, 50);
@@ -50,6 +50,7 @@ TEST(Preprocess, EveryStageHasItsMethods) {
     EXPECT_EQ(settings->change.method, ChangeMethod::octree);
     EXPECT_EQ(settings->change.voxel_m, 0.04);
     EXPECT_EQ(settings->change.least_points, 3);
+    EXPECT_EQ(settings->change.threshold_steps, 5.0);
     EXPECT_EQ(settings->min_segment_points, 100);
     const auto again = read(to_json(*settings).dump());
     ASSERT_TRUE(again) << to_text(again.error());
@@ -99,11 +100,22 @@ INSTANTIATE_TEST_SUITE_P(
             R"({"change": {"threshold": 3}})",
             "preprocess.change.threshold",
             "did you mean threshold_steps?"},
-        Wrong{R"({"change": {"voxel_m": 0.1}})", "preprocess.change.voxel_m", "Valid"},
+        Wrong{
+            R"({"change": {"voxel_m": 0.1}})",
+            "preprocess.change.voxel_m",
+            "valid: method, threshold_steps"},
         Wrong{
             R"({"change": {"threshold_steps": -1}})",
             "preprocess.change.threshold_steps",
             "above 0"},
+        Wrong{
+            R"({"smoothing": {"method": "mls"}})",
+            "preprocess.smoothing.method",
+            "did you mean moving_least_squares?"},
+        Wrong{
+            R"({"smoothing": {"method": "gauss"}})",
+            "preprocess.smoothing.method",
+            "valid: moving_least_squares, none"},
         Wrong{R"({"outliers": {"neighbours": 1.5}})", "preprocess.outliers.neighbours", "whole"},
         Wrong{R"({"outliers": {"neighbours": 1e6}})", "preprocess.outliers.neighbours", "4096"},
         Wrong{R"({"smoothing": {"order": 3}})", "preprocess.smoothing.order", "1 (linear)"},
@@ -114,6 +126,12 @@ INSTANTIATE_TEST_SUITE_P(
             "seconds above 0"}
     )
 );
+
+TEST(Preprocess, NumbersStandInErrorsAsTheyWereWritten) {
+    EXPECT_EQ(read(R"({"outliers": {"neighbours": 0}})").error().message, "is 0");
+    EXPECT_EQ(read(R"({"outliers": {"neighbours": 5000}})").error().message, "is 5000");
+    EXPECT_EQ(read(R"({"smoothing": {"radius_m": 0.25}})").error().message, "is 0.25");
+}
 
 }  // namespace
 }  // namespace kinectlab::experiments

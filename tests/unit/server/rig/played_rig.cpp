@@ -50,9 +50,9 @@ class PlayedActuator final : public rig::Actuator {
 public:
     explicit PlayedActuator(PlayedRig& rig) : rig_(rig) {}
 
-    Result<void> configure(const lab::Parameters&) override { return {}; }
-    Result<void> displace(double angle_rad) override {
-        return apply({simulate::Action::displace, angle_rad});
+    Result<void> configure(const std::string&, const lab::Parameters&) override { return {}; }
+    Result<void> displace(double value) override {
+        return apply({simulate::Action::displace, value});
     }
     Result<void> hold() override { return apply({simulate::Action::hold}); }
     Result<void> release() override { return apply({simulate::Action::release}); }
@@ -62,7 +62,7 @@ public:
     }
     Result<rig::ActuatorState> state() override {
         const simulate::Truth truth = rig_.truth();
-        return rig::ActuatorState{static_cast<rig::BobMotion>(truth.motion), truth.angle_rad};
+        return rig::ActuatorState{static_cast<rig::ApparatusMotion>(truth.motion), truth.value};
     }
 
 private:

@@ -1,0 +1,84 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "pipeline/core/camera.hpp"
+#include "pipeline/core/frame.hpp"
+
+namespace kinectlab {
+
+/// Where a patch of visible surface is, from pixels that belong to it more or less, and how sure
+/// that is. Holds one patch from frame to frame; the covariance is the sum of
+///   - the readings' noise, neighbours' shared part reckoned with,
+///   - the outline: each of 16 sectors about the centroid moves for itself. How much is measured
+///     by what its weights change from frame to frame once the patch's own motion is taken out;
+///     half a pixel over a depth sensor's correlation window is expected before anything is seen,
+///   - the common mode: what the centroid moves by if all votes count for more or for less,
+///   - what is hidden, if less is seen than usual.
+class PatchPlace {
+public:
+    explicit PatchPlace(const RgbdCamera& camera);
+
+    struct Place {
+        int points = 0;
+        double area_m2 = 0.0;  ///< seen, across the line of sight
+        Eigen::Vector3d centroid_cam = Eigen::Vector3d::Zero();
+        Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
+        /// Principal axes as columns, longest first, a right-handed turn; signs are arbitrary.
+        Eigen::Matrix3d axes_cam = Eigen::Matrix3d::Identity();
+        Eigen::Matrix3d turn_covariance = Eigen::Matrix3d::Zero();  ///< of the axes, rad²
+        bool axes_known = false;  ///< the three are clearly of different length
+    };
+
+    /// `votes` as SurfaceVote counts them; a pixel belongs to the patch by half where it has
+    /// `half_vote`, by a whole at one and a half of that. `pixels` have a reading.
+    [[nodiscard]] Place measure(
+        const RgbdFrame& frame,
+        std::span<const std::uint32_t> pixels,
+        std::span<const std::uint8_t> votes,
+        double half_vote
+    );
+
+    /// The patch was out of sight: nothing to compare the next outline with.
+    void lose();
+    /// Another patch.
+    void forget();
+
+    /// Area and centroid alone, to choose among patches.
+    struct Glance {
+        double area_m2 = 0.0;
+        Eigen::Vector3d centroid_cam = Eigen::Vector3d::Zero();
+    };
+    [[nodiscard]] Glance glance(const RgbdFrame& frame, std::span<const std::uint32_t> pixels)
+        const;
+
+private:
+    struct Weighted {
+        std::uint32_t pixel = 0;
+        float weight = 0.0F;
+        Eigen::Vector3f off = Eigen::Vector3f::Zero();  ///< from the centroid, m
+    };
+    [[nodiscard]] Eigen::Vector3d point(const RgbdFrame& frame, std::uint32_t pixel) const;
+    [[nodiscard]] Eigen::Matrix3d expected_outline(double mass);
+    void compare_outlines(const Eigen::Vector3d& centroid, double mass);
+    void keep_axes(Place& place, const Eigen::Matrix3d& spread) const;
+
+    RgbdCamera camera_;
+    std::vector<Weighted> now_, before_;
+    std::vector<float> weight_now_, weight_before_;  // a value a pixel
+    Eigen::Vector3d centroid_before_ = Eigen::Vector3d::Zero();
+    Eigen::Matrix3d measured_ = Eigen::Matrix3d::Zero();  // mean over `comparisons_`
+    double comparisons_ = 0.0;
+    double usual_area_m2_ = 0.0;
+};
+
+/// The axes with those signs that turn least from other axes.
+[[nodiscard]] Eigen::Matrix3d nearest_signs(
+    const Eigen::Matrix3d& axes_cam, const Eigen::Matrix3d& before_cam
+);
+
+}  // namespace kinectlab

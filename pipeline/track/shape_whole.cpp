@@ -1,0 +1,90 @@
+#include "pipeline/track/shape_whole.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace kinectlab {
+namespace {
+
+constexpr double kMostSeenThrough = 0.2;  // of the rays that tell: cans and mugs show up to 0.1
+constexpr double kRimPx = 1.5;            // a sensor's outlines are this unsure
+constexpr double kRimOfSize = 0.1;        // and the fit's own, where much is left out
+constexpr double kMostRays = 2500.0;
+constexpr double kNearest_m = 0.05;  // to the camera: what reaches there may fill the picture
+
+/// Rays that meet it meet the shape, well inside its outline.
+Shape slimmer(const Shape& shape, double rim_m) {
+    Shape slim = shape;
+    if (shape.kind == ShapeKind::cone)
+        slim.point += rim_m / std::sin(shape.size) * shape.axis;
+    else
+        slim.size =
+            std::max(0.5 * shape.size, shape.size - std::max(rim_m, kRimOfSize * shape.size));
+    return slim;
+}
+
+struct Window {
+    int left, right, top, bottom;  // px, inclusive
+};
+
+/// Where a ball around the shape's seen length may be in the picture.
+Window window_of(const ShapeFit& fit, const Pinhole& camera) {
+    const Shape& shape = fit.shape;
+    Eigen::Vector3d middle = shape.point;
+    double reach = shape.size;
+    if (shape.kind != ShapeKind::sphere) {
+        middle += 0.5 * (fit.low + fit.high) * shape.axis;
+        const double across =
+            shape.kind == ShapeKind::cone ? fit.high * std::tan(shape.size) : shape.size;
+        reach = std::hypot(0.5 * (fit.high - fit.low), across);
+    }
+    const double near = middle.z() - reach, far = middle.z() + reach;
+    if (!(near > kNearest_m)) return {0, camera.width - 1, 0, camera.height - 1};
+    const auto bound = [&](double at, double focal, double centre, int size) {
+        const double least = at - reach, most = at + reach;
+        const double low = focal * least / (least < 0.0 ? near : far) + centre;
+        const double high = focal * most / (most < 0.0 ? far : near) + centre;
+        const double last = size - 1;
+        return std::pair(
+            static_cast<int>(std::clamp(std::floor(low), 0.0, last)),
+            static_cast<int>(std::clamp(std::ceil(high), 0.0, last))
+        );
+    };
+    const auto [left, right] = bound(middle.x(), camera.fx, camera.cx, camera.width);
+    const auto [top, bottom] = bound(middle.y(), camera.fy, camera.cy, camera.height);
+    return {left, right, top, bottom};
+}
+
+}  // namespace
+
+bool is_whole(
+    const ShapeFit& fit,
+    const DisparityImage& image,
+    const Pinhole& camera,
+    const DisparityScale& scale
+) {
+    const Shape& shape = fit.shape;
+    if (shape.kind == ShapeKind::plane) return true;
+    const Shape slim = slimmer(shape, kRimPx * shape.point.norm() / camera.fx);
+    const Window window = window_of(fit, camera);
+    const double area = (window.right - window.left + 1.0) * (window.bottom - window.top + 1.0);
+    const int stride = 1 + static_cast<int>(std::sqrt(area / kMostRays));
+    double on = 0.0, through = 0.0;
+    for (int v = window.top; v <= window.bottom; v += stride)
+        for (int u = window.left; u <= window.right; u += stride) {
+            const double s = image.row(v)[u];
+            if (s <= 0.0) continue;
+            const Eigen::Vector3d ray = camera.ray(u, v);
+            const double w = meet(ray, shape);
+            if (!(w > 0.0) || !(meet(ray, slim) > 0.0)) continue;
+            const double height = height_on(shape, ray / w);
+            if (shape.kind != ShapeKind::sphere && (height < fit.low || height > fit.high))
+                continue;
+            const double off = (s - w / scale.inverse_depth_step) / scale.sigma_at(s);
+            on += std::abs(off) <= kLastGateSigmas ? 1.0 : 0.0;
+            through += off < -kLastGateSigmas ? 1.0 : 0.0;
+        }
+    return through <= kMostSeenThrough * (on + through);
+}
+
+}  // namespace kinectlab
