@@ -22,7 +22,8 @@ export function launch() {
 export async function visit(browser, url) {
   const context = await browser.newContext({ baseURL: url, viewport: { width: 1280, height: 800 }, timezoneId: 'Europe/Berlin', locale: 'en-GB' });
   const page = await context.newPage();
-  page.setDefaultTimeout(20_000);
+  // A loaded machine draws a page in many seconds; waiting longer costs nothing where all is well.
+  page.setDefaultTimeout(60_000);
   const errors = [];
   page.on('pageerror', (error) => errors.push(String(error)));
   page.on('console', (message) => {

@@ -91,12 +91,12 @@ test('the camera picture is there and moves, the run is prepared and released', 
   findings.push(...(await inspect(page, '09-session')));
   await mainButton(page, 'prepare').click();
   await reach(page, 'release');
-  assert.match(await stateSentence(page), /held at its angle/);
+  assert.match(await stateSentence(page), /The bob is held/);
   const still = await canvasState(page, camera);
   assert.ok(still.contrast > 60, `a picture and not a plain area: contrast ${still.contrast}`);
   await mainButton(page, 'release').click();
   await reach(page, 'stop');
-  assert.match(await stateSentence(page), /swings/);
+  assert.match(await stateSentence(page), /The bob moves/);
   await page.waitForFunction(
     ([selector, hash]) => {
       const canvas = document.querySelector(selector);
@@ -116,8 +116,8 @@ test('g appears with its uncertainty, as the interface says it', async () => {
   await reach(page, 'result', 60_000);
   await mainButton(page, 'result').click();
   await page.getByRole('heading', { name: /^Run \d+/ }).waitFor();
-  await page.locator('.uplot').nth(1).waitFor();
-  shownG = await page.getByTestId('g').innerText();
+  await page.locator('[data-plot="position"] canvas').waitFor();
+  shownG = await page.getByTestId('first-result').innerText();
   const shown = readMeasurement(shownG);
   const run = await page.evaluate(async () => (await fetch(`/api/v1${location.pathname}`)).json());
   const g = run.result.results.find((m) => m.name === 'g');
@@ -133,8 +133,8 @@ test('the list of runs opens it again', async () => {
   await page.getByRole('row').nth(1).waitFor();
   findings.push(...(await inspect(page, '12-runs')));
   await page.getByRole('link', { name: /^Open run/i }).first().click();
-  await page.getByTestId('g').waitFor();
-  assert.equal(await page.getByTestId('g').innerText(), shownG);
+  await page.getByTestId('first-result').waitFor();
+  assert.equal(await page.getByTestId('first-result').innerText(), shownG);
   await page.goBack();
   await page.getByRole('heading', { name: 'Runs', level: 1 }).waitFor();
 });
@@ -217,7 +217,7 @@ test('a student does all of it by keyboard alone', async () => {
     assert.ok(await main.evaluate((e) => e === document.activeElement), `the focus stays on the button that now says ${action}`);
     if (key) await keyboard.press(key);
   }
-  await page.getByTestId('g').waitFor();
+  await page.getByTestId('first-result').waitFor();
   assert.deepEqual(errors, []);
   await context.close();
 });
@@ -241,7 +241,7 @@ test('a run that ends while the connection is gone is there when it is back', as
   await reach(page, 'result');
   await refusal.waitFor({ state: 'detached' });
   assert.match(await stateSentence(page), /The result is there/);
-  await page.getByTestId('g').waitFor();
+  await page.getByTestId('first-result').waitFor();
 });
 
 test('a lost connection is said and heals by itself, over the network and over a restart', async () => {

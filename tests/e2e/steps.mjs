@@ -18,7 +18,7 @@ export function mainButton(page, action) {
 }
 
 /** Waits until the main button offers the action; if it never does, says what the page said instead. */
-export async function reach(page, action, timeout = 40_000) {
+export async function reach(page, action, timeout = 90_000) {
   await mainButton(page, action).waitFor({ timeout }).catch(async (error) => {
     throw new Error(`the main button never said ${action}; the page said: ${await stateSentence(page)}`, { cause: error });
   });

@@ -80,10 +80,28 @@ export interface Measurement {
   budget?: BudgetLine[];
 }
 
+/** One of the checks of what a good run looks like; `reason` is for who missed it. */
+export interface AcceptanceCheck {
+  fact: string;
+  /** null where the run does not tell it. */
+  value: number | null;
+  min?: number;
+  max?: number;
+  ok: boolean;
+  reason: string;
+}
+
+/** Results of older programs lack the optional members. */
 export interface Result {
   experiment: string;
   parameters: Record<string, number>;
   results: Measurement[];
+  analysis?: { method: string; objects: string[]; settings: Record<string, number> };
+  facts?: Record<string, number>;
+  acceptance?: AcceptanceCheck[];
+  accepted?: boolean;
+  warnings?: string[];
+  notes?: string[];
   provenance: Record<string, unknown>;
 }
 
@@ -113,14 +131,6 @@ export interface RunPage {
 }
 
 export type Column = (number | null)[];
-
-/** `GET /runs/{id}/fit`: positions in the lab frame, null where nothing was measured. */
-export interface Fit {
-  t_s: number[];
-  measured: Record<'x' | 'y' | 'z', Column>;
-  fit: Record<'x' | 'y' | 'z', Column>;
-  residual: Record<'x' | 'y' | 'z', Column>;
-}
 
 export interface LiveTicket {
   ticket: string;

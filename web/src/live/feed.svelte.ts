@@ -31,11 +31,14 @@ export class RigFeed {
   /** Server clock minus ours, ms. */
   clockOffset = $state(0);
 
-  /** t (s since the first), x, y, z (m) of the bob. */
-  readonly history = new SlidingColumns(4, capacity);
-  /** Grows with each change of the history. */
+  /** What has been seen, in the order in which it was. */
+  objects = $state.raw<readonly string[]>([]);
+  /** Of each object t (s since the first of all), x, y, z (m). */
+  readonly histories = new Map<string, SlidingColumns>();
+  /** The newest pose of each object. */
+  readonly poses = new Map<string, PoseMessage>();
+  /** Grows with each change of the histories. */
   version = 0;
-  pose: PoseMessage | null = null;
   picture: Picture | null = null;
 
   private originNs = NaN;
@@ -99,7 +102,7 @@ export class RigFeed {
         this.rig = message.rig;
         this.run = message.run;
         this.restart();
-        for (const point of message.trail) this.append(point.tNs, point.p);
+        for (const point of message.trail) this.append(point.object, point.tNs, point.p);
         break;
       case 'rig':
         this.rig = message.rig;
@@ -109,8 +112,8 @@ export class RigFeed {
         break;
       case 'pose':
         this.missed += message.missed;
-        this.pose = message;
-        this.append(message.tNs, message.p);
+        this.poses.set(message.object, message);
+        this.append(message.object, message.tNs, message.p);
         this.seen(message.tNs / 1e6);
         break;
       case 'other':
@@ -125,18 +128,32 @@ export class RigFeed {
   }
 
   private restart(): void {
-    this.history.clear();
+    this.histories.clear();
+    this.poses.clear();
+    this.objects = [];
     this.originNs = NaN;
     this.version += 1;
   }
 
-  private append(tNs: number, p: readonly number[]): void {
+  private append(object: string, tNs: number, p: readonly number[]): void {
     if (Number.isNaN(this.originNs)) this.originNs = tNs;
     const t = (tNs - this.originNs) / 1e9;
+    const history = this.historyOf(object);
     // Time runs forward only; a repeated message changes nothing.
-    if (this.history.length > 0 && t <= this.history.last(T)) return;
-    this.history.push(t, p[0] ?? NaN, p[1] ?? NaN, p[2] ?? NaN);
+    if (history.length > 0 && t <= history.last(T)) return;
+    history.push(t, p[0] ?? NaN, p[1] ?? NaN, p[2] ?? NaN);
     this.version += 1;
+  }
+
+  private historyOf(object: string): SlidingColumns {
+    let history = this.histories.get(object);
+    if (history) return history;
+    // A path without a name belongs to the one thing that is followed.
+    history = this.histories.get('') ?? new SlidingColumns(4, capacity);
+    this.histories.delete('');
+    this.histories.set(object, history);
+    this.objects = [...this.histories.keys()];
+    return history;
   }
 
   private seen(t: number): void {

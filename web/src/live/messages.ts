@@ -2,11 +2,14 @@
 import type { Rig, Run } from '../api/types';
 
 export type Vec3 = [number, number, number];
+export type Quaternion = [number, number, number, number];
 export type PoseStatus = 'tracked' | 'interpolated' | 'lost';
 
 export interface TrailPoint {
   tNs: number;
   p: Vec3;
+  /** Empty where the server does not say: there is only one then. */
+  object: string;
 }
 
 export interface HelloMessage {
@@ -36,10 +39,12 @@ export interface PoseMessage {
   tNs: number;
   object: string;
   status: PoseStatus;
-  /** m, lab frame; NaN where the bob was not seen */
+  /** m, lab frame; NaN where it was not seen */
   p: Vec3;
   v: Vec3;
   s: Vec3;
+  /** x, y, z, w; null of what is followed without its orientation */
+  q: Quaternion | null;
   missed: number;
 }
 
@@ -86,20 +91,28 @@ function parsePose(json: Record<string, unknown>, seq: number): PoseMessage | nu
   const p = vec3(json['p']);
   if (status !== 'lost' && !p.every(Number.isFinite)) return null;
   return {
-    type: 'pose', seq, tNs, object: String(object ?? ''), status, p, v: vec3(json['v']), s: vec3(json['s']),
+    type: 'pose', seq, tNs, object: String(object ?? ''), status, p, v: vec3(json['v']), s: vec3(json['s']), q: quaternion(json['q']),
     missed: typeof missed === 'number' && missed > 0 ? missed : 0,
   };
 }
 
-function parseTrail(value: unknown): TrailPoint[] {
+/** Rows of [t, x, y, z], or an object of such rows for each thing that is followed. */
+function parseTrail(value: unknown, object = ''): TrailPoint[] {
+  if (isRecord(value)) return Object.entries(value).flatMap(([name, rows]) => (Array.isArray(rows) ? parseTrail(rows, name) : []));
   if (!Array.isArray(value)) return [];
   const trail: TrailPoint[] = [];
   for (const row of value) {
     if (!Array.isArray(row) || typeof row[0] !== 'number') continue;
     const p = vec3(row.slice(1));
-    if (p.every(Number.isFinite)) trail.push({ tNs: row[0], p });
+    if (p.every(Number.isFinite)) trail.push({ tNs: row[0], p, object: typeof row[4] === 'string' ? row[4] : object });
   }
   return trail;
+}
+
+function quaternion(value: unknown): Quaternion | null {
+  if (!Array.isArray(value) || value.length !== 4 || !value.every((part) => typeof part === 'number')) return null;
+  const [x, y, z, w] = value as Quaternion;
+  return Math.abs(Math.hypot(x, y, z, w) - 1) < 0.01 ? [x, y, z, w] : null;
 }
 
 function vec3(value: unknown): Vec3 {

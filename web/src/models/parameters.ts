@@ -2,9 +2,11 @@
 import type { FieldError } from '../api/types';
 import type { Parameter } from '../api/experiment';
 import { formatQuantity, parseDecimal } from './number';
+import { duration } from './time';
+import { splitName } from './units';
 
-/** Shown first; the rest is for the curious, under “More settings”. */
-const common = ['length_m', 'amplitude_deg', 'gravity', 'duration_s'];
+/** How many fields stand open; the rest is for the curious, under “More settings”. */
+const openFields = 4;
 
 export interface ParameterGroups {
   first: Parameter[];
@@ -14,17 +16,16 @@ export interface ParameterGroups {
 /** A real rig has no knob for what only a simulation can change. */
 export function groupParameters(parameters: Parameter[], simulated: boolean): ParameterGroups {
   const possible = parameters.filter((p) => simulated || !p.simulationOnly);
-  const first = common.flatMap((name) => possible.filter((p) => p.name === name));
-  const more = possible.filter((p) => !first.includes(p));
-  return first.length > 0 ? { first, more } : { first: more, more: [] };
+  const duration = possible.filter((p) => p.name === 'duration_s');
+  // How well something is known, and what is not given unless one wants to, is for the curious.
+  const plain = possible.filter((p) => !duration.includes(p) && p.default !== null && !splitName(p.name).stem.endsWith('_u'));
+  const first = [...plain.slice(0, openFields - duration.length), ...duration];
+  return { first, more: possible.filter((p) => !first.includes(p)) };
 }
 
-/** What the rig has in its stand: as the run under way, or else the last one, set it; what is typed for the next run is not
- * there before Prepare. Without any run it stands as the definition says. */
-export function standing(run: { parameters: Record<string, number> } | null, definition: Parameter[]): { length: number; bobRadius: number } {
-  const of = (name: string, otherwise: number) =>
-    run?.parameters[name] || definition.find((p) => p.name === name)?.default || otherwise;
-  return { length: of('length_m', 1), bobRadius: of('bob_radius_m', 0.05) };
+/** The values to begin with; what has no default is not given. */
+export function defaultsOf(parameters: Parameter[]): Record<string, number> {
+  return Object.fromEntries(parameters.flatMap((p) => (p.default === null ? [] : [[p.name, p.default]])));
 }
 
 export function rangeText(p: Parameter): string {
@@ -44,6 +45,7 @@ export function readParameters(parameters: Parameter[], texts: Record<string, st
   const errors: FieldError[] = [];
   for (const p of parameters) {
     const text = texts[p.name] ?? '';
+    if (p.default === null && text.trim() === '') continue;
     const value = parseDecimal(text);
     const cure = `give a number from ${formatQuantity(p.min, '1')} to ${formatQuantity(p.max, p.unit)}`;
     if (Number.isNaN(value)) errors.push({ field: `parameters.${p.name}`, message: text.trim() ? `“${text.trim()}” is not a number` : 'is empty', cure });
@@ -51,4 +53,10 @@ export function readParameters(parameters: Parameter[], texts: Record<string, st
     else values[p.name] = value;
   }
   return { values, errors };
+}
+
+/** How long a run takes as it is set at first: `measures for 30 s`; empty where the definition does not say. */
+export function measuringTime(parameters: Parameter[]): string {
+  const seconds = parameters.find((p) => p.name === 'duration_s')?.default;
+  return typeof seconds === 'number' ? `measures for ${duration(seconds * 1000)}` : '';
 }

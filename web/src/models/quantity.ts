@@ -3,7 +3,9 @@ import type { BudgetLine, Measurement } from '../api/types';
 /** Angles are radians inside the project and degrees where a person reads them. */
 export function forPeople(m: Measurement): Measurement {
   const factor = 180 / Math.PI;
-  const unit = m.unit === 'rad' ? '°' : m.unit === 'rad/s' ? '°/h' : null;
+  // What turns with the Earth is told in degrees an hour, what turns before one's eyes in degrees a second.
+  const slow = Math.max(Math.abs(m.value), m.u) < 1e-3;
+  const unit = m.unit === 'rad' ? '°' : m.unit === 'rad/s' ? (slow ? '°/h' : '°/s') : null;
   if (unit === null) return m;
   const scale = unit === '°/h' ? factor * 3600 : factor;
   const scaled: Measurement = { ...m, value: m.value * scale, u: m.u * scale, unit };
@@ -29,16 +31,4 @@ export function budgetBars(lines: BudgetLine[]): BudgetBar[] {
       share: variance > 0 ? (line.u * line.u) / variance : 0,
       length: largest > 0 ? line.u / largest : 0,
     }));
-}
-
-/** Root mean square of what is there; NaN if nothing is. */
-export function rms(values: (number | null)[]): number {
-  let sum = 0;
-  let n = 0;
-  for (const v of values) {
-    if (v === null || !Number.isFinite(v)) continue;
-    sum += v * v;
-    n += 1;
-  }
-  return n > 0 ? Math.sqrt(sum / n) : NaN;
 }

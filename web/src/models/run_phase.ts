@@ -1,7 +1,7 @@
 /** What a run is doing, said in a sentence, and the one thing to do about it. */
 import type { Booking, Rig, Run, RunState } from '../api/types';
 import { clockTime, duration, localTimes, minute, second, slotText } from './time';
-import { inWords } from './words';
+import { capitalised, inWords, objectsInWords } from './words';
 import { bookingInterval } from './slots';
 
 export type Action = 'prepare' | 'release' | 'stop' | 'result' | 'book' | 'wait';
@@ -30,6 +30,10 @@ export interface Situation {
   releaseLeft?: number | null;
   /** Whether all this is only what was last known: the stream is gone. */
   lost?: boolean;
+  /** What the run's experiment watches; left away where it is not known yet. */
+  objects?: readonly string[];
+  /** Whether it is drawn aside and held before it moves. */
+  held?: boolean;
 }
 
 const underWay: RunState[] = ['preparing', 'ready', 'releasing', 'measuring', 'analysing'];
@@ -90,35 +94,44 @@ function knownPhase(s: Situation): Phase {
 
 function underWayPhase(run: Run, s: Situation): Phase {
   const mine = s.mayCommand;
+  const names = s.objects ?? [];
+  const it = objectsInWords(names);
+  const many = names.length > 1;
+  const held = s.held ?? false;
   switch (run.state) {
     case 'preparing':
-      return { ...wait('active', 'The rig is getting ready: it stops the bob, looks at the empty scene and lifts the bob to its angle.', 'Preparing …'), abortable: mine };
-    case 'ready':
+      return { ...wait('active', `The rig is getting ready: it looks at the scene and puts ${it} in place.`, 'Preparing …'), abortable: mine };
+    case 'ready': {
+      const stands = `${capitalised(it)} ${many ? 'are' : 'is'} ${held ? 'held' : 'ready'}`;
       return mine
-        ? { sentence: `The bob is held at its angle. ${releaseCall(s.releaseLeft)}`, tone: 'ready', action: 'release', label: 'Release', abortable: true }
-        : wait('ready', 'The bob is held at its angle and waits to be released.', 'Ready');
+        ? { sentence: `${stands}. ${startCall(s.releaseLeft, held)}`, tone: 'ready', action: 'release', label: held ? 'Release' : 'Start', abortable: true }
+        : wait('ready', `${stands} and ${many ? 'wait' : 'waits'} to be ${held ? 'released' : 'started'}.`, 'Ready');
+    }
     case 'releasing':
-      return { ...wait('active', 'The magnet lets go of the bob …', 'Releasing …'), abortable: mine };
-    case 'measuring':
+      return { ...wait('active', held ? `The rig lets go of ${it} …` : 'The motion starts …', held ? 'Releasing …' : 'Starting …'), abortable: mine };
+    case 'measuring': {
+      const moves = `${capitalised(it)} ${many ? 'move' : 'moves'} and every frame is measured.`;
       return mine
-        ? { sentence: 'The bob swings and every frame is measured. Stop when you have seen enough, or let it run to its end.', tone: 'active', action: 'stop', label: 'Stop', abortable: true }
-        : wait('active', 'The bob swings and every frame is measured.', 'Measuring');
+        ? { sentence: `${moves} Stop when you have seen enough, or let it run to its end.`, tone: 'active', action: 'stop', label: 'Stop', abortable: true }
+        : wait('active', moves, 'Measuring');
+    }
     default:
-      return { ...wait('active', 'The motion is measured. The fit of the pendulum is being made …', 'Analysing …'), abortable: mine };
+      return { ...wait('active', 'The motion is measured. The fit is being made …', 'Analysing …'), abortable: mine };
   }
 }
 
-/** How long a bob that is held still waits to be released, ms; null where nothing waits or the server does not say. */
+/** How long what is held still waits to be released, ms; null where nothing waits or the server does not say. */
 export function releaseLeft(run: Run | null, now: number): number | null {
   const until = run?.state === 'ready' && run.release_until ? Date.parse(run.release_until) : NaN;
   return Number.isFinite(until) ? Math.max(0, until - now) : null;
 }
 
 /** Changes once only: it is read out whenever it changes. The seconds are counted beside the button. */
-function releaseCall(left: number | null | undefined): string {
+function startCall(left: number | null | undefined, held: boolean): string {
+  const start = held ? 'Release' : 'Start';
   return typeof left === 'number' && left <= minute
-    ? 'Release it within a minute, or the run ends without a measurement.'
-    : 'Release it when you are ready.';
+    ? `${start} within a minute, or the run ends without a measurement.`
+    : `${start} when you are ready.`;
 }
 
 /** How far the measurement is: seconds done and in all; null while nothing is measured. */
@@ -151,7 +164,7 @@ export function endSentence(run: Run): string {
 function reasonText(run: Run, reason: string): string {
   // The analysis says what it lacks; that somebody pressed Stop is what one can do something about.
   if (run.state === 'failed' && /^samples:/i.test(reason) && stoppedEarly(run)) {
-    return 'Stop came too early for a result: let the bob swing for three periods or more';
+    return 'Stop came too early for a result: measure for longer';
   }
   return localTimes(inWords(reason.replace(/^[a-z]\w*(\.\w+)*: /, '')));
 }

@@ -1,44 +1,55 @@
 /** Names of the wire as a student would say them. */
 import type { Rig } from '../api/types';
+import { splitName } from './units';
 
+/** Where the name itself would say too little; all others are read as they are written. */
 const parameterLabels: Record<string, string> = {
-  length_m: 'Length of the pendulum',
-  length_u_m: 'Uncertainty of the length',
-  bob_radius_m: 'Radius of the bob',
   amplitude_deg: 'Starting angle',
   gravity: 'Gravity',
   damping_per_s: 'Damping',
-  latitude_deg: 'Latitude',
   duration_s: 'How long to measure',
-};
-
-const parameterUnits: Record<string, string> = {
-  length_m: 'm', length_u_m: 'm', bob_radius_m: 'm', amplitude_deg: '°', gravity: 'm/s²',
-  latitude_deg: '°', damping_per_s: '1/s', duration_s: 's',
+  incline_deg: 'Slope of the incline',
+  drive_hz: 'Frequency of the drive',
+  mass_a_kg: 'Mass of ball A',
+  mass_b_kg: 'Mass of ball B',
+  radius_a_m: 'Radius of ball A',
+  radius_b_m: 'Radius of ball B',
 };
 
 const quantityLabels: Record<string, string> = {
   g: 'Acceleration of free fall g',
   period: 'Period as it swung',
   small_angle_period: 'Period at a small angle',
-  amplitude: 'Angle at the start',
-  damping: 'Damping',
+  amplitude: 'Amplitude at the start',
   quality_factor: 'Quality factor',
   turning_rate: 'Turning of the swing plane',
+  precession_rate: 'Turning of the swing plane',
+  restitution: 'Coefficient of restitution',
+  tracked_share: 'Share of frames in which it was seen',
+  outlier_share: 'Share of outliers',
+  gap_share: 'Share of gaps',
+  reduced_chi2: 'Scatter against the expected (reduced χ²)',
+  periods: 'Periods seen',
+  duration_s: 'Time measured',
+};
+
+const quantitySymbols: Record<string, string> = {
+  g: 'g', period: 'T', small_angle_period: 'T₀', stiffness: 'k', restitution: 'e', quality_factor: 'Q', acceleration: 'a', latitude: 'φ',
 };
 
 const sourceLabels: Record<string, string> = {
   statistics: 'Scatter of the measured points',
-  length: 'Length of the pendulum',
   clock: 'Clock of the camera',
   'depth scale': 'Depth scale of the camera',
 };
 
-/** As a student meets them: the pendulum first, then how it is measured; unknown ones last. */
-export function inReadingOrder(parameters: Record<string, number>): [string, number][] {
-  const order = Object.keys(parameterLabels);
-  const place = (name: string) => (order.includes(name) ? order.indexOf(name) : order.length);
-  return Object.entries(parameters).sort(([a], [b]) => place(a) - place(b));
+/** As the experiment's definition has them; names that it lacks follow by the alphabet. */
+export function inReadingOrder(parameters: Record<string, number>, definition: readonly { name: string }[] = []): [string, number][] {
+  const place = (name: string) => {
+    const at = definition.findIndex((p) => p.name === name);
+    return at < 0 ? definition.length : at;
+  };
+  return Object.entries(parameters).sort(([a], [b]) => place(a) - place(b) || a.localeCompare(b));
 }
 
 const rigStateWords: Record<Rig['state'], string> = { idle: 'Free', busy: 'In use', offline: 'Switched off' };
@@ -54,17 +65,26 @@ export function rigBadge(rig: Pick<Rig, 'state' | 'sentence'>, yours = false): {
   if (yours) return { word: 'Yours now', tone: 'active' };
   return rig.sentence.startsWith('Booked') ? { word: 'Booked', tone: '' } : { word, tone: 'good' };
 }
-export const parameterLabel = (name: string): string => parameterLabels[name] ?? humanise(name);
-export const parameterUnit = (name: string): string => parameterUnits[name] ?? '';
-export const quantityLabel = (name: string): string => quantityLabels[name] ?? humanise(name);
-export const sourceLabel = (name: string): string => sourceLabels[name] ?? humanise(name);
-export const experimentTitle = (name: string): string => (name === 'pendulum' ? 'Foucault pendulum' : humanise(name));
 
-/** A sentence of the server's without names of the wire: `is length_m right?` → `is the length of the pendulum right?` */
+/** `string_mass_kg` → `String mass`, `length_u_m` → `Uncertainty of the length` */
+export function parameterLabel(name: string): string {
+  const known = parameterLabels[name];
+  if (known) return known;
+  const { stem } = splitName(name);
+  const words = humanise(stem.replace(/_u$/, ''));
+  return /_u$/.test(stem) ? `Uncertainty of ${withArticle(words)}` : words;
+}
+
+export const parameterUnit = (name: string): string => (name === 'gravity' ? 'm/s²' : splitName(name).unit);
+export const quantityLabel = (name: string): string => quantityLabels[name] ?? humanise(name);
+export const quantitySymbol = (name: string): string => quantitySymbols[name] ?? '';
+export const sourceLabel = (name: string): string => sourceLabels[name] ?? humanise(name);
+
+/** A sentence of the server's without names of the wire: `is length_m right?` → `is the length right?` */
 export function inWords(text: string): string {
-  return text.replace(/\b(?:parameters\.)?([a-z]+(?:_[a-z]+)+)\b/g, (whole, name: string) => {
-    const label = parameterLabels[name];
-    return label ? withArticle(label) : whole;
+  return text.replace(/\b(?:parameters\.)?([a-z]+(?:_[a-z0-9]+)+)\b/g, (whole, name: string) => {
+    const known = name in parameterLabels || splitName(name).unit !== '';
+    return known ? withArticle(parameterLabel(name)) : whole;
   });
 }
 
@@ -73,8 +93,20 @@ function withArticle(label: string): string {
   return words.startsWith('how ') || words === 'damping' ? words : `the ${words}`;
 }
 
-/** `string_mass_kg` → `String mass kg` */
+/** `small_angle_period` → `Small angle period` */
 export function humanise(name: string): string {
   const words = name.replaceAll('_', ' ').trim();
   return words.charAt(0).toUpperCase() + words.slice(1);
+}
+
+/** What is watched, for the middle of a sentence: `the bob`, `ball a and ball b`. */
+export function objectsInWords(names: readonly string[]): string {
+  const words = names.map((name) => name.replaceAll('_', ' '));
+  if (words.length === 0) return 'what moves';
+  if (words.length === 1) return `the ${words[0]}`;
+  return `${words.slice(0, -1).join(', ')} and ${words[words.length - 1]}`;
+}
+
+export function capitalised(text: string): string {
+  return text.charAt(0).toUpperCase() + text.slice(1);
 }

@@ -29,9 +29,3 @@ export function onFrame(draw: () => void): () => void {
     if (drawings.size === 0) cancelAnimationFrame(handle);
   };
 }
-
-/** The half-width of a symmetric axis that holds `value`: it grows in steps and never jitters. */
-export function growReach(reach: number, value: number, step = 0.05): number {
-  if (!Number.isFinite(value) || Math.abs(value) <= reach) return reach;
-  return Math.ceil(Math.abs(value) / step + 0.2) * step;
-}

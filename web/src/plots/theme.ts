@@ -11,3 +11,10 @@ export function onThemeChange(callback: () => void): () => void {
   dark.addEventListener('change', callback);
   return () => dark.removeEventListener('change', callback);
 }
+
+const objectColors = ['--object-1', '--object-2', '--object-3', '--object-4'];
+
+/** The colour of the n-th thing that is watched, the same in every view. */
+export function objectColor(place: number): string {
+  return objectColors[Math.max(0, place) % objectColors.length] ?? '--object-1';
+}

@@ -8,7 +8,7 @@ it('shows an error at its field, with the cure', () => {
   expect(fieldMessage(error, 'parameters.length_m')).toBe('Is 9; give a number from 0.3 to 1.5.');
   expect(fieldMessage(error, 'parameters.gravity')).toBeNull();
   expect(formMessage(error, ['parameters.length_m'])).toBeNull();
-  expect(formMessage(error, ['parameters.gravity'])).toBe('Length of the pendulum is 9; give a number from 0.3 to 1.5.');
+  expect(formMessage(error, ['parameters.gravity'])).toBe('Length is 9; give a number from 0.3 to 1.5.');
 });
 
 it('says who or what, where no field does', () => {

@@ -10,7 +10,7 @@ describe('messages', () => {
   it('hello brings the rig, its run and the path so far', () => {
     const hello = parse({ type: 'hello', seq: 1, server_time: '2026-11-22T09:00:00Z', rig, run, trail: [[1e18, 0, 0, 1], [1e18, null, 0, 1], 'x', [1e18, 1]] });
     expect(hello).toMatchObject({ type: 'hello', seq: 1, serverTime: Date.UTC(2026, 10, 22, 9), run: { id: 3 } });
-    expect(hello?.type === 'hello' && hello.trail).toEqual([{ tNs: 1e18, p: [0, 0, 1] }]);
+    expect(hello?.type === 'hello' && hello.trail).toEqual([{ tNs: 1e18, p: [0, 0, 1], object: '' }]);
     expect(parse({ type: 'hello', seq: 1, rig, run: null })).toMatchObject({ run: null, trail: [] });
   });
 
@@ -18,6 +18,20 @@ describe('messages', () => {
     expect(parse(pose)).toMatchObject({ type: 'pose', seq: 5, p: [0.1, 0, 1], missed: 0 });
     expect(parse({ ...pose, status: 'lost', p: [null, null, null] })).toMatchObject({ status: 'lost', p: [NaN, NaN, NaN] });
     expect(parse({ ...pose, status: 'lost', p: null })).toMatchObject({ p: [NaN, NaN, NaN] });
+  });
+
+  it('tell of several objects', () => {
+    expect(parse({ ...pose, object: 'ball_b' })).toMatchObject({ object: 'ball_b' });
+    const named = parse({ type: 'hello', seq: 1, rig, run, trail: { a: [[1e18, 0, 0, 1]], b: [[1e18, 1, 0, 1]], c: 'x' } });
+    expect(named?.type === 'hello' && named.trail.map((point) => [point.object, point.p[0]])).toEqual([['a', 0], ['b', 1]]);
+    const rows = parse({ type: 'hello', seq: 1, rig, run, trail: [[1e18, 0, 0, 1, 'a']] });
+    expect(rows?.type === 'hello' && rows.trail[0]?.object).toBe('a');
+  });
+
+  it('bring an orientation only where there is one', () => {
+    expect(parse(pose)).toMatchObject({ q: null });
+    expect(parse({ ...pose, q: [0, 0, 0, 1] })).toMatchObject({ q: [0, 0, 0, 1] });
+    for (const q of [[0, 0, 0], [0, 0, 0, 0], [0, 0, null, 1], 'up']) expect(parse({ ...pose, q })).toMatchObject({ q: null });
   });
 
   it('of a kind not known yet are passed on, to be acknowledged', () => {

@@ -1,6 +1,6 @@
-import { expect, it } from 'vitest';
+import { describe, expect, it } from 'vitest';
 import { readDefinition } from '../../src/api/experiment';
-import { groupParameters, rangeText, readParameters, standing } from '../../src/models/parameters';
+import { defaultsOf, groupParameters, measuringTime, rangeText, readParameters } from '../../src/models/parameters';
 
 const definition = readDefinition('pendulum', {
   title: 'Foucault pendulum',
@@ -28,18 +28,42 @@ it('names the field, what is wrong and what would be right', () => {
 
 it('leaves out what only a simulation can change on a real rig', () => {
   const names = (simulated: boolean) => groupParameters(definition.parameters, simulated).first.map((p) => p.name);
-  expect(names(true)).toEqual(['length_m', 'gravity']);
-  expect(names(false)).toEqual(['length_m']);
+  expect(names(true)).toEqual(['length_m', 'gravity', 'latitude_deg']);
+  expect(names(false)).toEqual(['length_m', 'latitude_deg']);
   expect(rangeText(definition.parameters[0]!)).toBe('0.3 to 1.5');
 });
 
 it('refuses a definition from which no field can be built', () => {
-  expect(() => readDefinition('pendulum', { parameters: [{ name: 'x' }] })).toThrow('without a name or a default');
-  expect(readDefinition('other', null)).toEqual({ id: 'other', title: 'other', summary: '', parameters: [] });
+  expect(() => readDefinition('pendulum', { parameters: [{ unit: 'm' }] })).toThrow('without a name');
+  expect(readDefinition('other', null)).toMatchObject({ id: 'other', title: 'other', summary: '', parameters: [], objects: [], mine: false });
 });
 
-it('shows the rig as the last run set it, or else as the definition says', () => {
-  expect(standing({ parameters: { length_m: 0.3, bob_radius_m: 0.1 } }, definition.parameters)).toEqual({ length: 0.3, bobRadius: 0.1 });
-  expect(standing(null, definition.parameters)).toEqual({ length: 1, bobRadius: 0.05 });
-  expect(standing({ parameters: {} }, [])).toEqual({ length: 1, bobRadius: 0.05 });
+describe('a parameter without a default', () => {
+  const optional = readDefinition('x', {
+    parameters: [
+      { name: 'string_mass_kg', unit: 'kg', min: 0, max: 1, step: 0.001, default: null, help: '' },
+      { name: 'length_u_m', unit: 'm', min: 0, max: 0.1, step: 0.001, default: 0.001, help: '' },
+      { name: 'length_m', unit: 'm', min: 0, max: 2, step: 0.01, default: 1, help: '' },
+      { name: 'duration_s', unit: 's', min: 10, max: 600, step: 1, default: 90, help: '' },
+    ],
+  }).parameters;
+
+  it('is left away unless it is filled in', () => {
+    const texts = { length_m: '1', length_u_m: '0.001', duration_s: '30' };
+    expect(readParameters(optional, texts)).toEqual({ values: { length_m: 1, length_u_m: 0.001, duration_s: 30 }, errors: [] });
+    expect(readParameters(optional, { ...texts, string_mass_kg: '0,01' }).values['string_mass_kg']).toBe(0.01);
+    expect(readParameters(optional, { ...texts, string_mass_kg: 'light' }).errors).toHaveLength(1);
+    expect(defaultsOf(optional)).toEqual({ length_u_m: 0.001, length_m: 1, duration_s: 90 });
+  });
+
+  it('stands with the uncertainties among what is for the curious', () => {
+    const { first, more } = groupParameters(optional, true);
+    expect(first.map((p) => p.name)).toEqual(['length_m', 'duration_s']);
+    expect(more.map((p) => p.name)).toEqual(['string_mass_kg', 'length_u_m']);
+  });
+
+  it('does not hide how long it takes', () => {
+    expect(measuringTime(optional).replaceAll('\u00a0', ' ')).toBe('measures for 2 min');
+    expect(measuringTime([])).toBe('');
+  });
 });

@@ -1,7 +1,7 @@
 import { expect, it } from 'vitest';
 import { facts } from '../../src/models/provenance';
 import { inReadingOrder } from '../../src/models/words';
-import { budgetBars, forPeople, rms } from '../../src/models/quantity';
+import { budgetBars, forPeople } from '../../src/models/quantity';
 
 it('turns angles into degrees, uncertainty and budget with them', () => {
   const m = forPeople({ name: 'amplitude', value: Math.PI / 18, u: Math.PI / 1800, unit: 'rad', budget: [{ source: 'a', u: Math.PI / 180 }] });
@@ -17,14 +17,15 @@ it('shows the largest source first, with its share of the variance', () => {
   expect(budgetBars([{ source: 'none', u: 0 }])[0]).toMatchObject({ share: 0, length: 0 });
 });
 
-it('takes the scatter of what was measured', () => {
-  expect(rms([3, null, -4, NaN])).toBeCloseTo(Math.sqrt(12.5));
-  expect(rms([null])).toBeNaN();
+it('tells the turning of the Earth by the hour, of a robot by the second', () => {
+  expect(forPeople({ name: 'turning_rate', value: 5.1e-5, u: 1e-6, unit: 'rad/s' })).toMatchObject({ unit: '°/h' });
+  expect(forPeople({ name: 'turning_rate', value: 0.5, u: 1e-3, unit: 'rad/s' })).toMatchObject({ unit: '°/s' });
 });
 
-it('lists settings as a student meets them, what it does not know last', () => {
-  expect(inReadingOrder({ zeta: 1, duration_s: 30, amplitude_deg: 10, length_m: 1 }).map(([name]) => name)).toEqual([
-    'length_m', 'amplitude_deg', 'duration_s', 'zeta',
+it('lists settings as the definition has them, what it does not know last', () => {
+  const definition = [{ name: 'length_m' }, { name: 'amplitude_deg' }, { name: 'duration_s' }];
+  expect(inReadingOrder({ zeta: 1, alpha: 2, duration_s: 30, amplitude_deg: 10, length_m: 1 }, definition).map(([name]) => name)).toEqual([
+    'length_m', 'amplitude_deg', 'duration_s', 'alpha', 'zeta',
   ]);
 });
 

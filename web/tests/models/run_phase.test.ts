@@ -28,9 +28,9 @@ describe('the one button', () => {
 
   it('lets one try again after a run without a result', () => {
     for (const state of ['aborted', 'failed', 'interrupted'] as const) {
-      const phase = phaseOf(situation({ run: run(state, { reason: 'the bob was not seen' }) }));
+      const phase = phaseOf(situation({ run: run(state, { reason: 'the ball was not seen' }) }));
       expect(phase.action).toBe('prepare');
-      expect(phase.sentence).toContain('The bob was not seen.');
+      expect(phase.sentence).toContain('The ball was not seen.');
     }
   });
 
@@ -90,6 +90,23 @@ describe('the one button', () => {
   });
 });
 
+describe('what is said of a run', () => {
+  const sentence = (state: RunState, objects: string[], held: boolean) => phaseOf(situation({ run: run(state), objects, held }));
+
+  it('takes its words from the experiment', () => {
+    expect(sentence('ready', ['bob'], true)).toMatchObject({ label: 'Release', sentence: 'The bob is held. Release when you are ready.' });
+    expect(sentence('ready', ['ball_a', 'ball_b'], false)).toMatchObject({ label: 'Start', sentence: 'Ball a and ball b are ready. Start when you are ready.' });
+    expect(sentence('measuring', ['ball_a', 'ball_b'], false).sentence).toMatch(/^Ball a and ball b move and/);
+    expect(sentence('measuring', ['robot'], false).sentence).toMatch(/^The robot moves and/);
+  });
+
+  it('stays general while the experiment is not known', () => {
+    for (const state of ['preparing', 'ready', 'releasing', 'measuring', 'analysing'] as const) {
+      expect(phaseOf(situation({ run: run(state) })).sentence).not.toMatch(/bob|pendulum|swing|magnet/);
+    }
+  });
+});
+
 it('knows how far the measurement is', () => {
   expect(progress(run('measuring'), now)).toEqual({ done: 10, total: 30 });
   expect(progress(run('measuring'), now + 60_000)).toEqual({ done: 30, total: 30 });
@@ -141,7 +158,7 @@ describe('why a run ended', () => {
 
   it('names no field', () => {
     expect(endSentence(run('failed', { reason: 'parameters.length_m: length_m is not what the arc says' })))
-      .toBe('The run failed. The length of the pendulum is not what the arc says.');
+      .toBe('The run failed. The length is not what the arc says.');
   });
 });
 
