@@ -126,10 +126,13 @@ std::size_t grow(
     while (taken < side.size() && std::abs(side[taken]->t - t) <= look)
         ++taken;
     while (taken < side.size() && taken >= kFewest) {
+        // From the newest stretch alone: over a long one drag would hide a cushion.
+        const double from = side[taken - 1]->t;
         Eigen::Matrix2d normal = Eigen::Matrix2d::Zero();
         Eigen::Matrix<double, 2, 3> right = Eigen::Matrix<double, 2, 3>::Zero();
-        for (std::size_t i = 0; i < taken; ++i) {
-            const Eigen::Vector2d row(1.0, side[i]->t - t);
+        for (std::size_t i = taken; i-- > 0;) {
+            if (std::abs(side[i]->t - from) > look && taken - i > kFewest) break;
+            const Eigen::Vector2d row(1.0, side[i]->t - from);
             normal += row * row.transpose();
             right += row * side[i]->p_lab.transpose();
         }
@@ -139,8 +142,8 @@ std::size_t grow(
         const std::size_t end = std::min(taken + kChunk, side.size());
         std::vector<double> off;
         for (std::size_t i = taken; i < end; ++i) {
-            const Eigen::Vector2d row(1.0, side[i]->t - t);
-            const double reach = std::abs(row[1]);
+            const Eigen::Vector2d row(1.0, side[i]->t - from);
+            const double reach = std::abs(row[1]) + look / 2.0;
             const double slack = 0.5 * kStrongDrag * speed * reach * reach;
             const Vector3d d = side[i]->p_lab - line.transpose() * row;
             const double known = 1.0 + row.dot(inverse * row);
