@@ -33,7 +33,7 @@ void Channel::run_changed(const lab::Run& run, const Encoders& encoders) {
 void Channel::pose_measured(const bus::PoseMeasured& pose, TimeNs now) {
     ++seq_;
     if (pose.run && pose.sample.status != TrackStatus::lost) {
-        trail_.push_back(encode_trail_point(pose.sample));
+        trail_.push_back(encode_trail_point(pose.object, pose.sample));
         if (trail_.size() > kTrailPoints) trail_.pop_front();
     }
     if (viewers_.empty()) return;

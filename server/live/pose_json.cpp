@@ -49,6 +49,17 @@ std::string encode_pose(const bus::PoseMeasured& pose, std::uint64_t seq) {
     append(out, "p", sample.p_lab);
     append(out, "v", sample.v_lab);
     append(out, "s", sample.sigma_p());
+    if (sample.has_orientation && sample.q_lab_obj.coeffs().allFinite()) {
+        const Eigen::Quaterniond& q = sample.q_lab_obj;
+        fmt::format_to(
+            std::back_inserter(out),
+            ",\"q\":[{:.5f},{:.5f},{:.5f},{:.5f}]",
+            q.x(),
+            q.y(),
+            q.z(),
+            q.w()
+        );
+    }
     return out;
 }
 
@@ -56,9 +67,11 @@ std::string missed_tail(std::uint64_t missed) {
     return fmt::format(",\"missed\":{}}}", missed);
 }
 
-std::string encode_trail_point(const MotionSample& sample) {
+std::string encode_trail_point(const std::string& object, const MotionSample& sample) {
     const auto& p = sample.p_lab;
-    return fmt::format("[{},{:.4f},{:.4f},{:.4f}]", sample.t, p.x(), p.y(), p.z());
+    return fmt::format(
+        "[{},{:.4f},{:.4f},{:.4f},{}]", sample.t, p.x(), p.y(), p.z(), nlohmann::json(object).dump()
+    );
 }
 
 }  // namespace kinectlab::live

@@ -65,6 +65,19 @@ std::optional<experiments::Definition> ExperimentLibrary::offered(const std::str
     return std::nullopt;
 }
 
+std::vector<experiments::Definition> ExperimentLibrary::all_offered() const {
+    std::vector<experiments::Definition> all = built_in_;
+    std::string decided;  // the newest version that is no draft says whether it is offered
+    for (const auto& stored : stored_.all()) {
+        const DefinitionState state = state_of(stored);
+        if (state == DefinitionState::draft || stored.experiment == decided) continue;
+        decided = stored.experiment;
+        if (state != DefinitionState::published) continue;
+        if (auto entry = to_entry(stored)) all.push_back(std::move(entry->definition));
+    }
+    return all;
+}
+
 Result<void> ExperimentLibrary::may_change(const lab::User& user, const std::string& id) const {
     if (!lab::at_least(user.role, lab::Role::instructor))
         return fail(ErrorCode::forbidden, "", "only instructors make experiments");

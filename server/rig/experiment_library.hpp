@@ -39,6 +39,9 @@ public:
     /// The version that runs are made with now; none for drafts and retired ones.
     [[nodiscard]] std::optional<experiments::Definition> offered(const std::string& id) const;
 
+    /// All that are offered, the built-in ones first.
+    [[nodiscard]] std::vector<experiments::Definition> all_offered() const;
+
     /// Stores a draft. Errors: forbidden (no instructor, somebody else's), conflict (a built-in
     /// one's id), invalid_argument (an id that is no plain name).
     [[nodiscard]] Result<LibraryEntry> save(

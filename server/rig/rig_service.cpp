@@ -169,6 +169,11 @@ std::optional<lab::RigStatus> RigService::find(const std::string& rig, TimeNs no
 /// Says in spans, not in times of day, how long a free rig stays free: the reader's zone is not
 /// known here.
 lab::RigStatus RigService::State::with_outlook(lab::RigStatus status, TimeNs now) const {
+    if (const auto rig = lane(status.id)) {
+        status.experiments.clear();
+        for (const auto& definition : library.all_offered())
+            if (offers((*rig)->settings(), definition)) status.experiments.push_back(definition.id);
+    }
     if (status.state != lab::RigState::idle || status.sentence != "Free") return status;
     constexpr TimeNs kOutlook = 12 * 3600 * kNsPerSecond;
     const auto bookings = store.bookings.on_rig(status.id, now, now + kOutlook);

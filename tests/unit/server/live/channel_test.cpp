@@ -59,7 +59,10 @@ TEST(Channel, ALateViewerGetsThePathWithoutGapOrRepetition) {
     EXPECT_EQ(messages[0]["type"], "hello");
     EXPECT_EQ(messages[0]["rig"]["id"], "rig-1");
     EXPECT_EQ(messages[0]["run"]["id"], 3);
-    EXPECT_EQ(messages[0]["trail"], json::parse("[[1,0.1,-0.2,0.1235],[2,0.1,-0.2,0.1235]]"));
+    EXPECT_EQ(
+        messages[0]["trail"],
+        json::parse("[[1,0.1,-0.2,0.1235,\"bob\"],[2,0.1,-0.2,0.1235,\"bob\"]]")
+    );
     EXPECT_EQ(messages[1]["t_ns"], 3);
     EXPECT_LT(messages[0]["seq"], messages[1]["seq"]);
 }
