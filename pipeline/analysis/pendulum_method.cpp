@@ -12,10 +12,20 @@ namespace {
 using Eigen::Vector3d;
 
 PendulumSettings to_pendulum(const AnalysisSettings& s, const AnalysisConditions& conditions) {
+    const auto given = [&](const char* name) -> std::optional<double> {
+        const auto found = s.find(name);
+        return found == s.end() ? std::nullopt : std::optional(found->second);
+    };
     PendulumSettings settings;
-    settings.length_m = s.at("length_m");
+    settings.length_m = given("length_m");
     settings.length_u_m = s.at("length_u_m");
-    settings.bob_radius_m = s.at("bob_radius_m");
+    settings.body = {
+        given("bob_radius_m"),
+        given("bob_density_kg_m3"),
+        given("air_density_kg_m3"),
+        given("string_mass_kg")};
+    settings.tilt_u_rad = conditions.tilt_u_rad;
+    settings.metric = conditions.metric;
     settings.latitude_deg = s.at("latitude_deg");
     settings.depth_scale_u = conditions.depth_scale_u;
     settings.clock_u = conditions.clock_u;
