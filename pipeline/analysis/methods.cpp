@@ -3,7 +3,7 @@
 namespace kinectlab {
 
 const std::vector<AnalysisMethod>& analysis_methods() {
-    static const std::vector<AnalysisMethod> kMethods = {pendulum_method()};
+    static const std::vector<AnalysisMethod> kMethods = {pendulum_method(), foucault_method()};
     return kMethods;
 }
 
