@@ -22,6 +22,7 @@ namespace {
 using experiments::Values;
 
 constexpr std::size_t kMostTableBytes = 256U << 20U;
+constexpr double kHandHeldTilt = 0.05;  // rad: nobody says how level a table's frame is
 
 struct Arguments {
     std::string experiment;
@@ -58,7 +59,10 @@ std::optional<int> parse(int argc, char** argv, Arguments& arguments) {
         "With z it goes up, without it y does"
     );
     app.add_option(
-        "--units", arguments.units, "of a table, such as cm or t=ms,x=cm,y=cm; else s and m"
+        "--units",
+        arguments.units,
+        "of a table, such as cm or t=ms,x=cm,y=cm; else s and m. With px what needs no scale is "
+        "measured"
     );
     app.add_option(
            "--set",
@@ -201,15 +205,15 @@ int analyse(int argc, char** argv) {
             : from_recording(arguments.recording, *definition, *values);
     if (!material) return report(material.error());
     material->provenance.program_version = config::version();
+    auto conditions = conditions_of(
+        material->provenance.camera, experiments::recorded_truth(*definition, arguments.recording)
+    );
+    if (is_table(arguments.recording)) {
+        conditions.metric = !layout->pixels;
+        conditions.tilt_u_rad = kHandHeldTilt;
+    }
     const auto evaluation = experiments::evaluate(
-        {*definition,
-         *values,
-         material->trajectories,
-         conditions_of(
-             material->provenance.camera,
-             experiments::recorded_truth(*definition, arguments.recording)
-         ),
-         {}},
+        {*definition, *values, material->trajectories, conditions, {}},
         material->provenance,
         material->provenance.first_frame
     );
