@@ -148,6 +148,14 @@ inline PendulumSettings exact_settings(const Swing& s) {
     return settings;
 }
 
+/// A metre, known as a ruler tells it, and the bob of a Swing.
+inline PendulumSettings usual_settings() {
+    PendulumSettings settings;
+    settings.length_m = 1.0;
+    settings.body = {0.05, 0.0, 0.0, 0.0};
+    return settings;
+}
+
 inline const Measurement& named(const PendulumResult& result, std::string_view name) {
     for (const auto& m : result.measurements)
         if (m.name == name) return m;
