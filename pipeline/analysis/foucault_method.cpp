@@ -86,9 +86,7 @@ void add_turning(const FollowedSwing& swing, AnalysisOutcome& outcome) {
         ));
     }
     if (swing.settings.metric) {
-        first.push_back(
-            budgets.measure("ellipse_a", "m", half_length, {.scale = half_length(p)})
-        );
+        first.push_back(budgets.measure("ellipse_a", "m", half_length, {.scale = half_length(p)}));
         first.push_back(budgets.measure("ellipse_b", "m", half_width, {.scale = half_width(p)}));
     } else {
         outcome.notes.emplace_back(
@@ -143,12 +141,7 @@ Result<AnalysisOutcome> run(
     const SwingAxes axes = swing_axes(*swing);
     outcome.plots = {
         path_plot(
-            result.fit,
-            axes.centre,
-            Eigen::Vector3d::UnitX(),
-            Eigen::Vector3d::UnitY(),
-            "x",
-            "y"
+            result.fit, axes.centre, Eigen::Vector3d::UnitX(), Eigen::Vector3d::UnitY(), "x", "y"
         ),
         plane_angle_plot(*swing, axes),
         ellipse_plot(*swing, axes),

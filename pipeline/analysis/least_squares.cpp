@@ -111,8 +111,8 @@ SwingParameters minimise(
     for (int step = 0; step < kMostSteps; ++step) {
         SwingMatrix damped = here.information + prior;
         damped.diagonal() *= 1.0 + lambda;
-        const SwingVector change =
-            inverse_information(damped, free) * (here.gradient + prior * prior_offset(best, priors));
+        const SwingVector change = inverse_information(damped, free) *
+                                   (here.gradient + prior * prior_offset(best, priors));
         const SwingParameters trial = moved(best, change);
         const double predicted = change.dot(damped * change);  // no change where it is not free
         if (plausible(trial)) {

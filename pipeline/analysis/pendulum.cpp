@@ -92,9 +92,7 @@ ObjectFit for_plots(
 
 }  // namespace
 
-Result<FollowedSwing> follow_swing(
-    const Trajectory& trajectory, const PendulumSettings& settings
-) {
+Result<FollowedSwing> follow_swing(const Trajectory& trajectory, const PendulumSettings& settings) {
     if (auto ok = check(settings); !ok) return tl::unexpected(ok.error());
     FollowedSwing swing;
     swing.settings = settings;
@@ -106,7 +104,8 @@ Result<FollowedSwing> follow_swing(
             sample.p_lab.z() = -sample.p_lab.z();
         samples = collect_position_samples(swing.trajectory);
         swing.notes.emplace_back(
-            "The ends of the arc have the smaller y: rows of pixels were counted downwards, and are "
+            "The ends of the arc have the smaller y: rows of pixels were counted downwards, and "
+            "are "
             "turned over here."
         );
     }
@@ -127,8 +126,7 @@ Result<FollowedSwing> follow_swing(
     swing.fit = std::move(*fit);
     if (auto ok = check_sides(swing.samples, swing.fit, guess->period); !ok)
         return tl::unexpected(ok.error());
-    swing.duration_s =
-        swing.samples[swing.fit.end - 1].t - swing.samples[swing.fit.begin].t;
+    swing.duration_s = swing.samples[swing.fit.end - 1].t - swing.samples[swing.fit.begin].t;
     swing.object = for_plots(swing.trajectory, swing.samples, swing.fit);
     return swing;
 }
@@ -137,8 +135,7 @@ PendulumResult pendulum_result(const FollowedSwing& swing) {
     PendulumResult result;
     result.measurements = swing_measurements(swing.fit, swing.settings, swing.duration_s);
     result.fit = swing.object;
-    result.warnings =
-        swing_warnings(swing.samples, swing.fit, result.measurements, swing.settings);
+    result.warnings = swing_warnings(swing.samples, swing.fit, result.measurements, swing.settings);
     result.notes = swing.notes;
     for (auto& note : swing_notes(swing.fit, result.measurements, swing.settings))
         result.notes.push_back(std::move(note));

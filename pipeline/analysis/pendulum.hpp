@@ -38,8 +38,8 @@ struct PendulumSettings {
 
 /// A swing that was found and fitted.
 struct FollowedSwing {
-    PendulumSettings settings;            ///< with what the positions themselves told
-    Trajectory trajectory;                ///< the one that was fitted: pixels may stand on their head
+    PendulumSettings settings;  ///< with what the positions themselves told
+    Trajectory trajectory;      ///< the one that was fitted: pixels may stand on their head
     std::vector<PositionSample> samples;  ///< all tracked ones
     SwingFit fit;
     ObjectFit object;

@@ -10,10 +10,10 @@ namespace kinectlab {
 
 /// What hangs there; each that is not given is not corrected for.
 struct PendulumBody {
-    std::optional<double> bob_radius_m;        ///< solid sphere that turns with the string
-    std::optional<double> bob_density_kg_m3;   ///< 0: as if air and string weighed nothing beside it
-    std::optional<double> air_density_kg_m3;   ///< 0: in a vacuum
-    std::optional<double> string_mass_kg;      ///< of an even string from the pivot to the centre
+    std::optional<double> bob_radius_m;       ///< solid sphere that turns with the string
+    std::optional<double> bob_density_kg_m3;  ///< 0: as if air and string weighed nothing beside it
+    std::optional<double> air_density_kg_m3;  ///< 0: in a vacuum
+    std::optional<double> string_mass_kg;     ///< of an even string from the pivot to the centre
 };
 
 /// From the frequency of small swings to g, for a rigid body of string and bob in air that is drawn

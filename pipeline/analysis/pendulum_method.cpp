@@ -39,9 +39,7 @@ AnalysisMethod pendulum_method() {
     AnalysisMethod method;
     method.name = "pendulum";
     method.settings = pendulum_setting_list();
-    method.settings.push_back(
-        {"latitude_deg", -90.0, 90.0, 45.0, "Of the rig, north positive."}
-    );
+    method.settings.push_back({"latitude_deg", -90.0, 90.0, 45.0, "Of the rig, north positive."});
     method.results = {
         "g",
         "period",

@@ -39,8 +39,8 @@ Measurement SwingBudgets::measure(
     }
     const double by_radius = g.dot(fit_.by_radius);
     const bool known = settings_.length_m && settings_.metric;
-    const double scale = known ? sensitivity.scale + by_radius * *settings_.length_m
-                               : sensitivity.scale;
+    const double scale =
+        known ? sensitivity.scale + by_radius * *settings_.length_m : sensitivity.scale;
     const double length = known ? sensitivity.length + by_radius : sensitivity.length;
     const double assumed = known ? 0.0 : by_radius * swing_priors(settings_, p.radius).radius_sigma;
     Measurement m{std::move(name), formula(p), 0.0, std::move(unit), {}};

@@ -20,8 +20,8 @@ struct SwingSensitivity {
 };
 
 /// Makes measurements of formulas on a fit's parameters, each with the lines "statistics",
-/// "camera tilt", "length", "clock", "depth scale" and "model choice", after GUM 5.1.2. "statistics"
-/// holds what the arc says of its own radius if no length was given.
+/// "camera tilt", "length", "clock", "depth scale" and "model choice", after GUM 5.1.2.
+/// "statistics" holds what the arc says of its own radius if no length was given.
 class SwingBudgets {
 public:
     SwingBudgets(const SwingFit& fit, const PendulumSettings& settings);

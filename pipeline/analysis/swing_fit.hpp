@@ -20,7 +20,7 @@ struct SwingFit {
     double free_radius = 0.0;  ///< of the arc, from the positions alone, m
     double free_radius_u = 0.0;
     double omega0_sq_u_at_radius = 0.0;  ///< of omega0_sq if the arc's radius were known, 1/s²
-    double free_turning = 0.0;  ///< of the swing plane beyond what its ellipse does, rad/s
+    double free_turning = 0.0;           ///< of the swing plane beyond what its ellipse does, rad/s
     double free_turning_u = 0.0;
     std::vector<bool> used;                  ///< of the samples [begin, end): false = outlier
     std::vector<Eigen::Vector3d> residuals;  ///< of the samples [begin, end), m
@@ -34,13 +34,13 @@ struct SwingFit {
     SwingVector by_radius;       ///< change of the parameters for each metre of the prior radius
 };
 
-/// Fits all parameters (the Earth's turning only if it is free) to all samples of the free swing that the guess lies
-/// in. Grows outward from the guess until the samples stop following the equation of motion (held,
-/// not yet released, stopped), robust at first (Huber), then by plain least squares without the
-/// outliers beyond 4.5 sigma. The noise is rescaled by what the residuals show in each direction,
-/// and its covariance takes in their correlation in time (swing_noise.hpp). The drag is chosen last.
-/// Errors (bad_data): less than three periods of free swing, motion that the equation cannot
-/// follow, amplitude beyond 80°.
+/// Fits all parameters (the Earth's turning only if it is free) to all samples of the free swing
+/// that the guess lies in. Grows outward from the guess until the samples stop following the
+/// equation of motion (held, not yet released, stopped), robust at first (Huber), then by plain
+/// least squares without the outliers beyond 4.5 sigma. The noise is rescaled by what the residuals
+/// show in each direction, and its covariance takes in their correlation in time (swing_noise.hpp).
+/// The drag is chosen last. Errors (bad_data): less than three periods of free swing, motion that
+/// the equation cannot follow, amplitude beyond 80°.
 [[nodiscard]] Result<SwingFit> fit_swing(
     std::span<const PositionSample> samples,
     const SwingGuess& guess,

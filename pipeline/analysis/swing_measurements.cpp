@@ -20,8 +20,8 @@ double swung_period(const SwingParameters& p, double duration_s) {
 
 /// The rate at which the run's mean amplitude falls, by both kinds of drag.
 double falling_rate(const SwingParameters& p, double duration_s) {
-    return p.damping + 4.0 / (3.0 * pi) * p.quadratic * std::sqrt(p.omega0_sq) *
-                           mean_amplitude(p, duration_s);
+    return p.damping +
+           4.0 / (3.0 * pi) * p.quadratic * std::sqrt(p.omega0_sq) * mean_amplitude(p, duration_s);
 }
 
 Measurement measure_g(
@@ -30,10 +30,10 @@ Measurement measure_g(
     const double l = settings.length_m.value_or(fit.parameters.radius);
     const PendulumCorrections corrections(settings.body, l);
     const double g = fit.parameters.omega0_sq * corrections.reduced_length(l);
-    const double by_length = fit.parameters.omega0_sq *
-                             (corrections.reduced_length(l * 1.001) -
-                              corrections.reduced_length(l * 0.999)) /
-                             (0.002 * l);
+    const double by_length =
+        fit.parameters.omega0_sq *
+        (corrections.reduced_length(l * 1.001) - corrections.reduced_length(l * 0.999)) /
+        (0.002 * l);
     SwingSensitivity sensitivity{.clock = 2.0 * g};
     SwingFormula formula;
     if (settings.length_m) {

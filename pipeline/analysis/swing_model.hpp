@@ -56,10 +56,10 @@ using SwingJacobian = Eigen::Matrix<double, 3, kSwingParameters>;
 
 /// Follows a swing and how it depends on the parameters, forward or backward in time.
 ///   n'' = w² (d - (d·n) n) - |n'|² n - 2γ n' - β |n'| n' - 2Ω (z × n')ₜ
-/// with d down, γ the damping, β the quadratic drag, Ω the vertical part of the Earth's turning and ₜ the part across n. The horizontal
-/// part of its turning pushes along the string; what remains across it is 1e-6 of gravity.
-/// Integrated by Dormand and Prince's fifth-order method, J. Comp. Appl. Math. 6 (1980), at steps
-/// that keep the frequency right to 1e-9.
+/// with d down, γ the damping, β the quadratic drag, Ω the vertical part of the Earth's turning and
+/// ₜ the part across n. The horizontal part of its turning pushes along the string; what remains
+/// across it is 1e-6 of gravity. Integrated by Dormand and Prince's fifth-order method, J. Comp.
+/// Appl. Math. 6 (1980), at steps that keep the frequency right to 1e-9.
 class SwingPath {
 public:
     explicit SwingPath(const SwingParameters& start);

@@ -25,7 +25,8 @@ std::string length_note(const SwingFit& fit, const Measurement& g) {
         g.value * fit.omega0_sq_u_at_radius / fit.parameters.omega0_sq, g.value * kRule / radius
     );
     return fmt::format(
-        "length_m was not given: the arc itself says {:.4f} m, known to {:.1f} mm. That is why g is "
+        "length_m was not given: the arc itself says {:.4f} m, known to {:.1f} mm. That is why g "
+        "is "
         "known to {:.2g} m/s² only; with a length measured to 0.5 mm it would be {:.2g} m/s².",
         radius,
         fit.free_radius_u * 1e3,
@@ -56,13 +57,16 @@ std::string drag_note(const SwingFit& fit) {
         "Drag: counted as linear; this run does not tell linear from quadratic drag{}. damping is "
         "the rate at which both together make this amplitude fall{}.",
         figures,
-        other != nullptr ? fmt::format(", as quadratic drag it would be {:.3g}/rad", other->quadratic)
-                         : std::string()
+        other != nullptr
+            ? fmt::format(", as quadratic drag it would be {:.3g}/rad", other->quadratic)
+            : std::string()
     );
 }
 
 std::vector<std::string> swing_notes(
-    const SwingFit& fit, const std::vector<Measurement>& measurements, const PendulumSettings& settings
+    const SwingFit& fit,
+    const std::vector<Measurement>& measurements,
+    const PendulumSettings& settings
 ) {
     std::vector<std::string> notes{drag_note(fit)};
     const bool has_g = !measurements.empty() && measurements.front().name == "g";

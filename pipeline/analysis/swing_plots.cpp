@@ -134,8 +134,13 @@ Plot amplitude_plot(const FollowedSwing& swing, const SwingAxes& axes) {
         measured.y.push_back(fitted * (1.0 + more / weight));
         measured.u.push_back(fitted * all.sigma / std::sqrt(weight));
     }
-    return {"amplitude", "Amplitude over time", "t / s", "amplitude / °", false,
-            {std::move(measured), std::move(envelope)}};
+    return {
+        "amplitude",
+        "Amplitude over time",
+        "t / s",
+        "amplitude / °",
+        false,
+        {std::move(measured), std::move(envelope)}};
 }
 
 Plot period_amplitude_plot(const FollowedSwing& swing, const SwingAxes& axes) {
@@ -163,8 +168,13 @@ Plot period_amplitude_plot(const FollowedSwing& swing, const SwingAxes& axes) {
             t0 * (1.0 + s / 16.0 + 11.0 * s * s / 3072.0 + 173.0 * s * s * s / 737280.0)
         );
     }
-    return {"period_amplitude", "Period against amplitude", "amplitude / °", "period / s", false,
-            {std::move(measured), std::move(exact), std::move(series)}};
+    return {
+        "period_amplitude",
+        "Period against amplitude",
+        "amplitude / °",
+        "period / s",
+        false,
+        {std::move(measured), std::move(exact), std::move(series)}};
 }
 
 std::map<std::string, double> swing_facts(

@@ -69,7 +69,9 @@ Result<TableLayout> parse_table_layout(std::string_view columns, std::string_vie
         if (value.empty()) {
             const auto scale = scale_of(name, false);
             if (!scale)
-                return wrong("--units", name, "give m, cm, mm or px, or each one, such as t=ms,x=cm");
+                return wrong(
+                    "--units", name, "give m, cm, mm or px, or each one, such as t=ms,x=cm"
+                );
             std::fill(layout.scale.begin() + 1, layout.scale.end(), *scale);
             std::fill(unit.begin() + 1, unit.end(), name);
             continue;
@@ -77,9 +79,7 @@ Result<TableLayout> parse_table_layout(std::string_view columns, std::string_vie
         const auto scale = at ? scale_of(value, *at == 0) : std::nullopt;
         if (!scale)
             return wrong(
-                "--units",
-                name + "=" + value,
-                "t takes s or ms; x, y and z take m, cm, mm or px"
+                "--units", name + "=" + value, "t takes s or ms; x, y and z take m, cm, mm or px"
             );
         layout.scale[*at] = *scale;
         unit[*at] = value;

@@ -12,9 +12,7 @@ Result<AnalysisOutcome> foucault(const Trajectory& path) {
     return analyse(
         "foucault",
         std::span(&path, 1),
-        {{"length_m", 1.0},
-         {"bob_radius_m", 0.05},
-         {"bob_density_kg_m3", 0.0}},
+        {{"length_m", 1.0}, {"bob_radius_m", 0.05}, {"bob_density_kg_m3", 0.0}},
         {}
     );
 }

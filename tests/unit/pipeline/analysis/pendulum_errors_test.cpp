@@ -185,9 +185,8 @@ TEST(PendulumWarnings, GravityOfAnotherPlanet) {
     EXPECT_THAT(warnings_of(path), Contains(HasSubstr("not found on the Earth")));
     PendulumSettings simulated = usual_settings();
     simulated.on_earth = false;
-    EXPECT_THAT(
-        warnings_of(path, simulated), Not(Contains(HasSubstr("not found on the Earth")))
-    ) << "a simulation was asked for it";
+    EXPECT_THAT(warnings_of(path, simulated), Not(Contains(HasSubstr("not found on the Earth"))))
+        << "a simulation was asked for it";
 }
 
 TEST(PendulumWarnings, LostFrames) {

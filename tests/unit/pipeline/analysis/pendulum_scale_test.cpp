@@ -19,8 +19,7 @@ PendulumSettings without_length(const Swing& swing) {
 
 TEST(PendulumScale, TheArcTellsTheLength) {
     const Swing swing{.length = 0.8, .amplitude_deg = 20};
-    const auto result =
-        analyse_pendulum(with_noise(generate(swing), 2), without_length(swing));
+    const auto result = analyse_pendulum(with_noise(generate(swing), 2), without_length(swing));
     ASSERT_TRUE(result) << to_text(result.error());
     const auto& g = named(*result, "g");
     EXPECT_NEAR(g.value, 9.81, 0.0981);
@@ -31,8 +30,7 @@ TEST(PendulumScale, TheArcTellsTheLength) {
 
 TEST(PendulumScale, AFlatArcGivesNoG) {
     const Swing swing{.amplitude_deg = 1};
-    const auto result =
-        analyse_pendulum(with_noise(generate(swing), 2), without_length(swing));
+    const auto result = analyse_pendulum(with_noise(generate(swing), 2), without_length(swing));
     ASSERT_TRUE(result) << to_text(result.error());
     EXPECT_EQ(result->measurements.front().name, "period");
     EXPECT_NEAR(named(*result, "small_angle_period").value, 2.0071, 2e-3);
@@ -69,7 +67,11 @@ TEST(PendulumScale, PixelsGiveAllThatNeedsNoScale) {
 TEST(PendulumScale, HandMotionGapsAndUnevenTimes) {
     for (const double length : {0.5, 1.5}) {
         const Swing swing{
-            .length = length, .latitude_deg = 0.0, .seconds = 40, .rest = 0.0, .held = 1.0,
+            .length = length,
+            .latitude_deg = 0.0,
+            .seconds = 40,
+            .rest = 0.0,
+            .held = 1.0,
             .jitter = 0.008};
         Trajectory path = in_pixels(swing);
         std::erase_if(path.samples, [&](const auto& m) {

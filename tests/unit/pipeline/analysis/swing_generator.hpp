@@ -23,9 +23,9 @@ struct Swing {
     double length = 1.0;
     double bob_radius = 0.05;
     double amplitude_deg = 10.0;
-    double sideways = 0.0;   ///< velocity at the release across the swing, m/s
-    double damping = 0.002;  ///< 1/s
-    double quadratic = 0.0;  ///< drag as the speed squared, 1/rad
+    double sideways = 0.0;      ///< velocity at the release across the swing, m/s
+    double damping = 0.002;     ///< 1/s
+    double quadratic = 0.0;     ///< drag as the speed squared, 1/rad
     double air_share = 0.0;     ///< mass of the displaced air over the bob's
     double string_share = 0.0;  ///< mass of the string over the bob's
     double latitude_deg = 45.0;
