@@ -8,8 +8,8 @@
 namespace kinectlab {
 namespace {
 
-constexpr int kFree = kTurning;  // all parameters before the Earth's turning
 constexpr int kMostSteps = 40;
+constexpr double kStrongestDrag = 10.0;  // 1/rad: a swing of 10° would be over at once
 
 /// Cost and, where asked for, its derivatives.
 NormalEquations evaluate(
@@ -37,7 +37,7 @@ NormalEquations evaluate(
 
 bool plausible(const SwingParameters& p) {
     return p.omega0_sq > 0.0 && p.radius > 0.0 && std::abs(p.damping) < std::sqrt(p.omega0_sq) &&
-           p.tilt.norm() < 1.0;
+           std::abs(p.quadratic) < kStrongestDrag && p.tilt.norm() < 1.0;
 }
 
 }  // namespace
@@ -77,16 +77,17 @@ SwingVector prior_offset(const SwingParameters& p, const SwingPriors& priors) {
     return offset;
 }
 
-SwingMatrix inverse_information(const SwingMatrix& information, int fixed) {
-    const int n = kSwingParameters - fixed;
-    const Eigen::VectorXd scale =
-        information.diagonal().head(n).cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
-    const Eigen::MatrixXd scaled =
-        scale.asDiagonal() * information.topLeftCorner(n, n) * scale.asDiagonal();
+SwingMatrix inverse_information(const SwingMatrix& information, const SwingMask& free) {
+    std::vector<int> at;
+    for (int i = 0; i < kSwingParameters; ++i)
+        if (free[static_cast<std::size_t>(i)]) at.push_back(i);
+    const Eigen::MatrixXd some = information(at, at);
+    const Eigen::VectorXd scale = some.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
+    const Eigen::MatrixXd scaled = scale.asDiagonal() * some * scale.asDiagonal();
     SwingMatrix inverse = SwingMatrix::Zero();
-    inverse.topLeftCorner(n, n) = scale.asDiagonal() *
-                                  scaled.ldlt().solve(Eigen::MatrixXd::Identity(n, n)) *
-                                  scale.asDiagonal();
+    inverse(at, at) = scale.asDiagonal() *
+                      scaled.ldlt().solve(Eigen::MatrixXd::Identity(scaled.rows(), scaled.cols())) *
+                      scale.asDiagonal();
     return inverse;
 }
 
@@ -95,6 +96,7 @@ SwingParameters minimise(
     SwingParameters start,
     const SwingWeights& weights,
     const SwingPriors& priors,
+    const SwingMask& free,
     double tolerance
 ) {
     const SwingMatrix prior = prior_information(priors);
@@ -109,11 +111,10 @@ SwingParameters minimise(
     for (int step = 0; step < kMostSteps; ++step) {
         SwingMatrix damped = here.information + prior;
         damped.diagonal() *= 1.0 + lambda;
-        const SwingVector change =
-            inverse_information(damped, 1) * (here.gradient + prior * prior_offset(best, priors));
+        const SwingVector change = inverse_information(damped, free) *
+                                   (here.gradient + prior * prior_offset(best, priors));
         const SwingParameters trial = moved(best, change);
-        const double predicted =
-            change.head<kFree>().dot(damped.topLeftCorner<kFree, kFree>() * change.head<kFree>());
+        const double predicted = change.dot(damped * change);  // no change where it is not free
         if (plausible(trial)) {
             NormalEquations there = evaluate(samples, trial, weights);
             const double trial_cost = there.cost + prior_cost(trial);

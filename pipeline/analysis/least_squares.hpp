@@ -11,7 +11,7 @@ namespace kinectlab {
 /// What is known before the first picture.
 struct SwingPriors {
     double radius = 1.0;         ///< m
-    double radius_sigma = 1e-3;  ///< m; 0 = exactly known
+    double radius_sigma = 1e-3;  ///< m; 0 = exactly known, infinity = not at all
     double tilt_sigma = 0.02;    ///< rad: how well the lab frame is levelled
 };
 
@@ -49,16 +49,19 @@ struct NormalEquations {
     const SwingParameters& parameters, const SwingPriors& priors
 );
 
-/// Inverse over the free parameters (all but the last `fixed`), zero elsewhere.
-[[nodiscard]] SwingMatrix inverse_information(const SwingMatrix& information, int fixed);
+/// Inverse over the free parameters, zero elsewhere.
+[[nodiscard]] SwingMatrix inverse_information(
+    const SwingMatrix& information, const SwingMask& free
+);
 
-/// Levenberg-Marquardt with Marquardt's scaling; the Earth's turning stays fixed. Ends when the
+/// Levenberg-Marquardt with Marquardt's scaling; what is not free stays as it starts. Ends when the
 /// next step would be shorter than `tolerance` standard deviations.
 [[nodiscard]] SwingParameters minimise(
     std::span<const PositionSample> samples,
     SwingParameters start,
     const SwingWeights& weights,
     const SwingPriors& priors,
+    const SwingMask& free,
     double tolerance = 1e-2
 );
 

@@ -5,6 +5,7 @@ namespace kinectlab {
 const std::vector<AnalysisMethod>& analysis_methods() {
     static const std::vector<AnalysisMethod> kMethods = {
         pendulum_method(),
+        foucault_method(),
         projectile_method(),
         incline_method(),
         spring_method(),

@@ -13,5 +13,6 @@ namespace kinectlab {
 [[nodiscard]] AnalysisMethod collision_method();
 [[nodiscard]] AnalysisMethod rigid_body_method();
 [[nodiscard]] AnalysisMethod path_method();
+[[nodiscard]] AnalysisMethod foucault_method();
 
 }  // namespace kinectlab

@@ -116,4 +116,21 @@ Plot phase_plot(
         {std::move(measured), {"fit", PlotMark::line, x, std::move(v), {}}}};
 }
 
+void label_pixels(std::vector<Plot>& plots) {
+    const auto relabel = [](std::string& label) {
+        for (const auto& [unit, instead] :
+             {std::pair(" / mm", " / px"),
+              std::pair(" / (m/s)", " / (1000 px/s)"),
+              std::pair(" / m", " / 1000 px")}) {
+            if (!label.ends_with(unit)) continue;
+            label.replace(label.size() - std::string_view(unit).size(), std::string::npos, instead);
+            return;
+        }
+    };
+    for (auto& plot : plots) {
+        relabel(plot.x_label);
+        relabel(plot.y_label);
+    }
+}
+
 }  // namespace kinectlab

@@ -42,4 +42,7 @@ namespace kinectlab {
     const std::string& symbol = "x"
 );
 
+/// Where a metre stands for a thousand pixels: the labels say so.
+void label_pixels(std::vector<Plot>& plots);
+
 }  // namespace kinectlab

@@ -5,12 +5,12 @@
 #include <limits>
 #include <numbers>
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <fmt/format.h>
 
 #include "pipeline/analysis/free_swing.hpp"
 #include "pipeline/analysis/median.hpp"
+#include "pipeline/analysis/swing_noise.hpp"
 
 namespace kinectlab {
 namespace {
@@ -18,53 +18,13 @@ namespace {
 constexpr double kOutlier = 4.5;  // sigma in three dimensions: one sample in 7,000 of pure noise
 constexpr double kFewestPeriods = 3.0;
 constexpr double kSteepest = 80.0 * std::numbers::pi / 180.0;
-constexpr double kMedianChi2 = 2.366;  // of three degrees of freedom
-constexpr double kSmallestNoise =
-    1e-6;  // share of the given variance below which residuals are rounding
+constexpr double kManyPeriods = 12.0;  // in which the drag shows more than one number
 
 using Samples = std::span<const PositionSample>;
 using Residuals = std::vector<Eigen::Vector3d>;
 
-std::vector<double> distances(
-    Samples samples, const Residuals& residuals, const Eigen::Matrix3d& rescale
-) {
-    std::vector<double> d(samples.size());
-    for (std::size_t i = 0; i < d.size(); ++i)
-        d[i] = (rescale * samples[i].whiten * residuals[i]).norm();
-    return d;
-}
-
-/// By how much the residuals exceed the samples' own sigma.
-double noise_factor(Samples samples, const Residuals& residuals) {
-    const double m = median(distances(samples, residuals, Eigen::Matrix3d::Identity()));
-    return std::max(m / std::sqrt(kMedianChi2), std::sqrt(kSmallestNoise));
-}
-
 SwingWeights robust_weights(double factor) {
     return {Eigen::Matrix3d::Identity() / factor, 3.0, {}};
-}
-
-/// Makes the used residuals white on average, whatever the given covariances say of their shape;
-/// the median of all sets the size if that is larger, so that nothing shrinks what counts as an
-/// outlier.
-Eigen::Matrix3d whiten_residuals(
-    Samples samples, const Residuals& residuals, const std::vector<bool>& use
-) {
-    Eigen::Matrix3d s = Eigen::Matrix3d::Zero();
-    double n = -static_cast<double>(kSwingParameters) / 3.0;
-    for (std::size_t i = 0; i < samples.size(); ++i) {
-        if (!use[i]) continue;
-        const Eigen::Vector3d r = samples[i].whiten * residuals[i];
-        s += r * r.transpose();
-        n += 1.0;
-    }
-    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(s / n);
-    const Eigen::Vector3d inverse_root =
-        eigen.eigenvalues().cwiseMax(kSmallestNoise).cwiseSqrt().cwiseInverse();
-    const Eigen::Matrix3d whiten =
-        eigen.eigenvectors() * inverse_root.asDiagonal() * eigen.eigenvectors().transpose();
-    const double size = median(distances(samples, residuals, whiten)) / std::sqrt(kMedianChi2);
-    return whiten / std::max(size, 1.0);
 }
 
 std::vector<bool> within(const std::vector<double>& d, double limit) {
@@ -73,55 +33,12 @@ std::vector<bool> within(const std::vector<double>& d, double limit) {
     return use;
 }
 
-struct ScoreCovariance {
-    SwingMatrix independent;  ///< each sample with its own noise (White 1980)
-    SwingMatrix correlated;   ///< and with its neighbours' (Newey and West 1987)
-};
-
-/// Sum of the products of the scores: of each sample with itself, and at all lags up to a quarter
-/// period, Bartlett-weighted.
-ScoreCovariance score_covariance(
-    Samples samples,
-    const Residuals& residuals,
-    const SwingParameters& parameters,
-    const SwingWeights& weights,
-    double period
-) {
-    std::vector<SwingVector> scores;
-    SwingPath path(parameters);
-    for (std::size_t i = 0; i < samples.size(); ++i) {
-        if (!weights.use[i]) continue;
-        path.go_to(samples[i].t - samples.front().t);
-        const Eigen::Matrix3d whiten = weights.rescale * samples[i].whiten;
-        scores.emplace_back((whiten * path.jacobian()).transpose() * (whiten * residuals[i]));
-    }
-    const double step =
-        (samples.back().t - samples.front().t) / static_cast<double>(samples.size());
-    const int lags = std::max(3, static_cast<int>(period / 4.0 / step));
-    ScoreCovariance sum{SwingMatrix::Zero(), SwingMatrix::Zero()};
-    for (std::size_t i = 0; i < scores.size(); ++i) {
-        SwingVector before = SwingVector::Zero();
-        for (int lag = 1; lag <= lags && static_cast<std::size_t>(lag) <= i; ++lag)
-            before += (1.0 - lag / (lags + 1.0)) * scores[i - static_cast<std::size_t>(lag)];
-        sum.independent.noalias() += scores[i] * scores[i].transpose();
-        sum.correlated.noalias() += scores[i] * before.transpose();
-    }
-    sum.correlated = sum.independent + sum.correlated + sum.correlated.transpose().eval();
-    return sum;
-}
-
-/// The covariance that the samples' own noise makes, each parameter widened by what correlation in
-/// time adds to it.
-SwingMatrix widened(const SwingMatrix& independent, const SwingMatrix& correlated) {
-    SwingVector factor = SwingVector::Ones();
-    for (int i = 0; i < kSwingParameters; ++i)
-        if (independent(i, i) > 0.0)
-            factor[i] = std::sqrt(std::max(1.0, correlated(i, i) / independent(i, i)));
-    return factor.asDiagonal() * independent * factor.asDiagonal();
-}
-
 Result<SwingParameters> follow_free_swing(
-    Samples samples, const SwingGuess& guess, const SwingPriors& priors, FreeSwing& range
+    Samples samples,
+    const SwingGuess& guess,
+    const SwingPriors& priors,
+    const SwingMask& free,
+    FreeSwing& range
 ) {
     SwingParameters parameters = guess.parameters;
     range = {guess.begin, guess.end, false, false};
@@ -138,7 +55,15 @@ Result<SwingParameters> follow_free_swing(
                 "result"
             );
         if (noise == 0.0) noise = noise_factor(known, swing_residuals(known, parameters));
-        parameters = minimise(known, parameters, robust_weights(noise), priors, 0.3);
+        const bool many = periods > kManyPeriods;
+        parameters = minimise(
+            known,
+            parameters,
+            robust_weights(noise),
+            priors,
+            drag_mask(free, many ? DragLaw::both : DragLaw::linear),
+            0.3
+        );
         if (whole) return parameters;
 
         const Residuals residuals = swing_residuals(known, parameters);
@@ -191,10 +116,16 @@ double energy_angle(const SwingParameters& p) {
 }
 
 Result<SwingFit> fit_swing(
-    std::span<const PositionSample> all, const SwingGuess& guess, const SwingPriors& priors
+    std::span<const PositionSample> all,
+    const SwingGuess& guess,
+    const SwingPriors& priors,
+    bool turning_free
 ) {
+    SwingMask base;
+    base.set();
+    base[kTurning] = turning_free;
     FreeSwing range;
-    auto followed = follow_free_swing(all, guess, priors, range);
+    auto followed = follow_free_swing(all, guess, priors, base, range);
     if (!followed) return tl::unexpected(followed.error());
 
     SwingFit fit;
@@ -208,11 +139,11 @@ Result<SwingFit> fit_swing(
         Eigen::Matrix3d::Identity() / factor, std::numeric_limits<double>::infinity(), {}};
     for (int round = 0; round < 4; ++round) {
         if (round > 0) weights.rescale = whiten_residuals(samples, fit.residuals, weights.use);
-        auto use = within(distances(samples, fit.residuals, weights.rescale), kOutlier);
+        auto use = within(residual_distances(samples, fit.residuals, weights.rescale), kOutlier);
         if (round > 1 && use == weights.use) break;
         weights.use = std::move(use);
         weights.rescale = whiten_residuals(samples, fit.residuals, weights.use);
-        fit.parameters = minimise(samples, fit.parameters, weights, priors);
+        fit.parameters = minimise(samples, fit.parameters, weights, priors, base);
         fit.residuals = swing_residuals(samples, fit.parameters);
     }
     fit.used = weights.use;
@@ -227,46 +158,66 @@ Result<SwingFit> fit_swing(
             "release the pendulum from a smaller angle, or correct length_m"
         );
 
-    const NormalEquations at_best = linearise(samples, fit.parameters, weights);
     const SwingMatrix prior = prior_information(priors);
-    const ScoreCovariance scores =
-        score_covariance(samples, fit.residuals, fit.parameters, weights, guess.period);
-    const SwingMatrix c = inverse_information(at_best.information + prior, 1);
     SwingMatrix tilt_prior = prior;
     tilt_prior(kRadius, kRadius) = 0.0;
-    fit.from_noise = widened(c * scores.independent * c, c * scores.correlated * c);
+    {
+        const SwingMatrix c = inverse_information(
+            linearise(samples, fit.parameters, weights).information + prior, base
+        );
+        const NoiseCovariance noisy = noise_covariance(
+            c, score_covariance(samples, fit.residuals, fit.parameters, weights, guess.period)
+        );
+        const double widening = std::max(
+            {1.0,
+             noisy.variance(kDamping) / c(kDamping, kDamping),
+             noisy.variance(kQuadratic) / c(kQuadratic, kQuadratic)}
+        );
+        fit.drag = choose_drag(samples, fit.parameters, weights, priors, base, widening);
+    }
+    fit.parameters = fit.drag.parameters;
+    fit.residuals = swing_residuals(samples, fit.parameters);
+
+    const SwingMask free = drag_mask(base, fit.drag.law);
+    const NormalEquations at_best = linearise(samples, fit.parameters, weights);
+    const ScoreCovariance scores =
+        score_covariance(samples, fit.residuals, fit.parameters, weights, guess.period);
+    const SwingMatrix c = inverse_information(at_best.information + prior, free);
+    fit.from_noise = noise_covariance(c, scores);
     fit.from_tilt = c * tilt_prior * c;
     fit.by_radius = c.col(kRadius) * prior(kRadius, kRadius);
 
-    // One more step without the radius' prior, and one with the Earth's turning set free.
-    const auto one_free =
-        [&](const SwingMatrix& known, int fixed, int index, double& step, double& u) {
-            const SwingMatrix inverse = inverse_information(at_best.information + known, fixed);
-            const SwingVector gradient =
-                at_best.gradient + known * prior_offset(fit.parameters, priors);
-            step = (inverse * gradient)[index];
-            u = std::sqrt(
-                widened(
-                    inverse * scores.independent * inverse, inverse * scores.correlated * inverse
-                )(index, index) +
-                (inverse * known * inverse)(index, index)
-            );
-        };
-    double step = 0.0;
-    one_free(tilt_prior, 1, kRadius, step, fit.free_radius_u);
-    fit.free_radius = fit.parameters.radius + step;
-    one_free(prior, 0, kTurning, step, fit.free_turning_u);
-    fit.free_turning = fit.parameters.turning + step;
+    // One more step without the radius' prior, with the radius known, and with the Earth's turning
+    // set free.
+    const auto one_free = [&](const SwingMatrix& known, const SwingMask& mask, int index) {
+        const SwingMatrix inverse = inverse_information(at_best.information + known, mask);
+        const SwingVector gradient =
+            at_best.gradient + known * prior_offset(fit.parameters, priors);
+        const double variance = noise_covariance(inverse, scores).variance(index) +
+                                (inverse * known * inverse)(index, index);
+        return std::pair((inverse * gradient)[index], std::sqrt(variance));
+    };
+    const auto radius = one_free(tilt_prior, free, kRadius);
+    fit.free_radius = fit.parameters.radius + radius.first;
+    fit.free_radius_u = radius.second;
+    SwingMask radius_known = free;
+    radius_known[kRadius] = false;
+    fit.omega0_sq_u_at_radius = one_free(prior, radius_known, kOmega0Sq).second;
+    SwingMask turning = free;
+    turning[kTurning] = true;
+    const auto turned = one_free(prior, turning, kTurning);
+    fit.free_turning = fit.parameters.turning + turned.first;
+    fit.free_turning_u = turned.second;
 
     double chi2 = 0.0;
     double n = 0.0;
-    const auto own = distances(samples, fit.residuals, Eigen::Matrix3d::Identity());
+    const auto own = residual_distances(samples, fit.residuals, Eigen::Matrix3d::Identity());
     for (std::size_t i = 0; i < own.size(); ++i) {
         if (!fit.used[i]) continue;
         chi2 += own[i] * own[i];
         n += 3.0;
     }
-    fit.reduced_chi2 = chi2 / (n - (kSwingParameters - 1));
+    fit.reduced_chi2 = chi2 / (n - static_cast<double>(free.count()));
     return fit;
 }
 

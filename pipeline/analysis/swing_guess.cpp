@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "pipeline/analysis/median.hpp"
+#include "pipeline/analysis/swing_arc.hpp"
 #include "pipeline/analysis/swing_spectrum.hpp"
 
 namespace kinectlab {
@@ -17,6 +18,7 @@ namespace {
 using std::numbers::pi;
 constexpr double kFewestPeriods = 3.0;
 constexpr double kWidest = 0.985;  // sin 80°
+constexpr double kShortest = 0.1;  // m: no search for the periods of shorter ones
 
 struct Sine {
     double misfit = std::numeric_limits<double>::infinity();  // root mean square over amplitude
@@ -111,10 +113,24 @@ SwingParameters to_parameters(
     return p;
 }
 
+/// From the arc where it shows, else from the weight of things on the Earth, else as if the swing
+/// were small: a start for a fit that finds it better.
+double rough_length(
+    std::span<const PositionSample> samples, const Sine& sine, double f, bool metric
+) {
+    const ArcCurvature arc = arc_curvature(samples);
+    const double least = sine.widest / 0.97;
+    if (arc.shows()) return std::max(least, 0.5 / arc.value);
+    if (metric) return std::max(least, 9.81 / std::pow(2.0 * pi * f, 2));
+    return 8.0 * sine.widest;
+}
+
 }  // namespace
 
-Result<SwingGuess> guess_swing(std::span<const PositionSample> samples, double length_m) {
-    const auto f = find_frequency(samples, length_m);
+Result<SwingGuess> guess_swing(
+    std::span<const PositionSample> samples, std::optional<double> given_length, bool metric
+) {
+    const auto f = find_frequency(samples, given_length.value_or(kShortest));
     if (!f)
         return fail(
             ErrorCode::bad_data,
@@ -144,7 +160,8 @@ Result<SwingGuess> guess_swing(std::span<const PositionSample> samples, double l
             "no three periods of a free swing below 80° were found in the motion",
             "let the pendulum swing freely, without touching it, for at least three periods"
         );
-    if (best.sine.widest > kWidest * length_m)
+    const double length_m = given_length.value_or(rough_length(samples, best.sine, *f, metric));
+    if (given_length && best.sine.widest > kWidest * length_m)
         return fail(
             ErrorCode::bad_data,
             "samples",

@@ -1,75 +1,57 @@
 #include "pipeline/analysis/swing_measurements.hpp"
 
 #include <cmath>
-#include <functional>
 #include <numbers>
+
+#include "pipeline/analysis/swing_budget.hpp"
 
 namespace kinectlab {
 namespace {
 
 using std::numbers::pi;
-using Formula = std::function<double(const SwingParameters&)>;
 
-constexpr double kSiderealDay = 86164.09;  // s
-constexpr double kWorstTurning = 1e-2;     // rad/s: a round orbit shows no turning
-
-/// Central differences, each over a tenth of the parameter's own uncertainty.
-SwingVector gradient(const Formula& formula, const SwingParameters& at, const SwingVector& sigma) {
-    SwingVector g = SwingVector::Zero();
-    for (int i = 0; i < kSwingParameters; ++i) {
-        if (sigma[i] <= 0.0) continue;
-        SwingVector step = SwingVector::Zero();
-        step[i] = std::max(0.1 * sigma[i], 1e-7);
-        g[i] = (formula(moved(at, step)) - formula(moved(at, -step))) / (2.0 * step[i]);
-    }
-    return g;
-}
-
-class Budgets {
-public:
-    Budgets(const SwingFit& fit, const PendulumSettings& settings)
-        : fit_(fit), settings_(settings), covariance_(fit.from_noise + fit.from_tilt) {}
-
-    /// `by_length` is the formula's own derivative by length_m, `by_clock` that by a relative error
-    /// of the clock's rate.
-    Measurement measure(
-        std::string name,
-        std::string unit,
-        const Formula& formula,
-        double by_clock,
-        double by_length = 0.0
-    ) const {
-        const SwingVector sigma =
-            covariance_.diagonal().cwiseMax(0.0).cwiseSqrt() + fit_.by_radius.cwiseAbs() * 1e-6;
-        const SwingVector g = gradient(formula, fit_.parameters, sigma);
-        const double by_radius = g.dot(fit_.by_radius);
-        Measurement m{std::move(name), formula(fit_.parameters), 0.0, std::move(unit), {}};
-        m.budget = {
-            {"statistics", std::sqrt(std::max(g.dot(covariance_ * g), 0.0))},
-            {"length", std::abs(by_length + by_radius) * settings_.length_u_m},
-            {"clock", std::abs(by_clock) * settings_.clock_u},
-            {"depth scale", std::abs(by_radius) * settings_.length_m * settings_.depth_scale_u},
-        };
-        m.u = combined(m.budget);
-        return m;
-    }
-
-private:
-    const SwingFit& fit_;
-    const PendulumSettings& settings_;
-    SwingMatrix covariance_;
-};
-
-/// Mean over the time of the squared amplitude, which falls as exp(-2γt).
-double mean_square_amplitude(const SwingParameters& p, double duration_s) {
-    const double x = 2.0 * p.damping * duration_s;
-    const double share = std::abs(x) < 1e-6 ? 1.0 - x / 2.0 : -std::expm1(-x) / x;
-    return std::pow(energy_angle(p), 2) * share;
-}
+constexpr double kWorstTurning = 1e-2;  // rad/s: a round orbit shows no turning
+constexpr double kArcShows = 0.1;       // relative uncertainty of a radius that is worth a g
 
 double swung_period(const SwingParameters& p, double duration_s) {
-    const double stretch = period_factor(std::sqrt(mean_square_amplitude(p, duration_s)));
+    const double stretch = period_factor(mean_amplitude(p, duration_s));
     return 2.0 * pi / std::sqrt(p.omega0_sq / (stretch * stretch) - p.damping * p.damping);
+}
+
+/// The rate at which the run's mean amplitude falls, by both kinds of drag.
+double falling_rate(const SwingParameters& p, double duration_s) {
+    return p.damping +
+           4.0 / (3.0 * pi) * p.quadratic * std::sqrt(p.omega0_sq) * mean_amplitude(p, duration_s);
+}
+
+Measurement measure_g(
+    const SwingBudgets& budgets, const SwingFit& fit, const PendulumSettings& settings
+) {
+    const double l = settings.length_m.value_or(fit.parameters.radius);
+    const PendulumCorrections corrections(settings.body, l);
+    const double g = fit.parameters.omega0_sq * corrections.reduced_length(l);
+    const double by_length =
+        fit.parameters.omega0_sq *
+        (corrections.reduced_length(l * 1.001) - corrections.reduced_length(l * 0.999)) /
+        (0.002 * l);
+    SwingSensitivity sensitivity{.clock = 2.0 * g};
+    SwingFormula formula;
+    if (settings.length_m) {
+        sensitivity.length = by_length;
+        formula = [&](const SwingParameters& x) {
+            return x.omega0_sq * corrections.reduced_length(l);
+        };
+    } else {
+        sensitivity.scale = by_length * l;
+        formula = [&](const SwingParameters& x) {
+            return x.omega0_sq * corrections.reduced_length(x.radius);
+        };
+    }
+    Measurement m = budgets.measure("g", "m/s²", formula, sensitivity);
+    for (const auto& [source, relative] : corrections.unknown())
+        m.budget.push_back({source, relative * g});
+    m.u = combined(m.budget);
+    return m;
 }
 
 }  // namespace
@@ -77,41 +59,41 @@ double swung_period(const SwingParameters& p, double duration_s) {
 std::vector<Measurement> swing_measurements(
     const SwingFit& fit, const PendulumSettings& settings, double duration_s
 ) {
-    const Budgets budgets(fit, settings);
+    const SwingBudgets budgets(fit, settings);
     const SwingParameters& p = fit.parameters;
-    const double l = settings.length_m;
-    const double inertia =
-        0.4 * settings.bob_radius_m * settings.bob_radius_m;  // of a solid sphere, for each kg
-    const double reduced_length = (l * l + inertia) / l;
-    const double g = p.omega0_sq * reduced_length;
     const auto period = [&](const SwingParameters& x) {
         return swung_period(x, duration_s);
     };
     const auto small_period = [](const SwingParameters& x) {
         return 2.0 * pi / std::sqrt(x.omega0_sq);
     };
+    const auto quality = [&](const SwingParameters& x) {
+        return std::sqrt(x.omega0_sq) / (2.0 * falling_rate(x, duration_s));
+    };
     std::vector<Measurement> all;
-    all.push_back(budgets.measure(
-        "g",
-        "m/s²",
-        [&](const SwingParameters& x) { return x.omega0_sq * reduced_length; },
-        2.0 * g,
-        p.omega0_sq * (1.0 - inertia / (l * l))
-    ));
-    all.push_back(budgets.measure("period", "s", period, period(p)));
-    all.push_back(budgets.measure("small_angle_period", "s", small_period, small_period(p)));
-    all.push_back(budgets.measure("amplitude", "rad", turning_angle, 0.0));
-    all.push_back(budgets.measure(
-        "damping", "1/s", [](const SwingParameters& x) { return x.damping; }, p.damping
-    ));
-    if (p.damping > 0.0)
+    if (shows_g(fit, settings)) all.push_back(measure_g(budgets, fit, settings));
+    all.push_back(budgets.measure("period", "s", period, {.clock = period(p)}));
+    all.push_back(
+        budgets.measure("small_angle_period", "s", small_period, {.clock = small_period(p)})
+    );
+    all.push_back(budgets.measure("amplitude", "rad", turning_angle, {.any_drag = false}));
+    if (fit.drag.law != DragLaw::quadratic)
         all.push_back(budgets.measure(
-            "quality_factor",
-            "1",
-            [](const SwingParameters& x) { return std::sqrt(x.omega0_sq) / (2.0 * x.damping); },
-            0.0
+            "damping",
+            "1/s",
+            [](const SwingParameters& x) { return x.damping; },
+            {.clock = p.damping, .any_drag = false}
         ));
-    if (fit.free_turning_u < kWorstTurning) {
+    if (fit.drag.law != DragLaw::linear)
+        all.push_back(budgets.measure(
+            "quadratic_damping",
+            "1/rad",
+            [](const SwingParameters& x) { return x.quadratic; },
+            {.any_drag = false}
+        ));
+    if (falling_rate(p, duration_s) > 0.0)
+        all.push_back(budgets.measure("quality_factor", "1", quality));
+    if (fit.free_turning_u < kWorstTurning && !settings.flat) {
         Measurement turning{"turning_rate", fit.free_turning, 0.0, "rad/s", {}};
         turning.budget = {
             {"statistics", fit.free_turning_u},
@@ -125,12 +107,39 @@ std::vector<Measurement> swing_measurements(
     return all;
 }
 
-SwingPriors swing_priors(const PendulumSettings& settings) {
+SwingPriors swing_priors(const PendulumSettings& settings, double rough_radius_m) {
     SwingPriors priors;
-    priors.radius = settings.length_m;
-    priors.radius_sigma =
-        std::hypot(settings.length_u_m, settings.length_m * settings.depth_scale_u);
+    priors.tilt_sigma = settings.tilt_u_rad;
+    priors.radius = priors.radius_sigma = rough_radius_m;
+    if (settings.length_m && settings.metric) {
+        priors.radius = *settings.length_m;
+        priors.radius_sigma =
+            std::hypot(settings.length_u_m, *settings.length_m * settings.depth_scale_u);
+    }
     return priors;
+}
+
+bool shows_g(const SwingFit& fit, const PendulumSettings& settings) {
+    if (settings.length_m) return true;
+    return settings.metric && fit.free_radius_u < kArcShows * fit.parameters.radius;
+}
+
+double amplitude_after(const SwingParameters& p, double t_s) {
+    const double theta = energy_angle(p);
+    const double x = p.damping * t_s;
+    const double grown = std::abs(x) < 1e-6 ? t_s : -std::expm1(-x) / p.damping;
+    const double by_speed = 4.0 / (3.0 * pi) * p.quadratic * std::sqrt(p.omega0_sq);
+    return theta * std::exp(-x) / (1.0 + by_speed * theta * grown);
+}
+
+double mean_amplitude(const SwingParameters& p, double duration_s) {
+    constexpr int kParts = 32;  // even: Simpson's rule
+    double sum = 0.0;
+    for (int i = 0; i <= kParts; ++i) {
+        const double weight = i == 0 || i == kParts ? 1.0 : (i % 2 == 1 ? 4.0 : 2.0);
+        sum += weight * std::pow(amplitude_after(p, duration_s * i / kParts), 2);
+    }
+    return std::sqrt(sum / (3.0 * kParts));
 }
 
 double earth_turning(double latitude_deg) {

@@ -8,7 +8,7 @@ namespace kinectlab {
 namespace {
 
 using State = SwingPath::State;
-using Rows = Eigen::Array<double, 10, 1>;
+using Rows = Eigen::Array<double, 11, 1>;
 
 constexpr double kPhaseStep = 0.12;  // rad: frequency right to 0.12⁶/5040 = 6e-10
 
@@ -19,7 +19,8 @@ enum Row {
     kRowOmega = 5,
     kRowTilt = 6,
     kRowDamping = 8,
-    kRowTurning = 9
+    kRowQuadratic = 9,
+    kRowTurning = 10
 };
 
 Eigen::Matrix<double, 3, 2> down_by_tilt(const SwingParameters& p) {
@@ -42,6 +43,7 @@ public:
           down_(p.down()),
           tilts_(p.omega0_sq * down_by_tilt(p)),
           damping_(p.damping),
+          quadratic_(p.quadratic),
           turning_(p.turning) {}
 
     void operator()(const State& y, State& dy) const {
@@ -58,17 +60,22 @@ public:
         const Rows d_lift = v.x() * ny - v.y() * nx + n.y() * vx - n.x() * vy;
         const Rows along = 2.0 * turning_ * d_lift - d_pull;
         const double stay = 2.0 * turning_ * lift - pull;
+        const double speed = v.norm();
+        const double drag = 2.0 * damping_ + quadratic_ * speed;
+        const double by_speed = speed > 0.0 ? quadratic_ / speed : 0.0;
+        const Rows d_drag = by_speed * (v.x() * vx + v.y() * vy + v.z() * vz);
         dy.leftCols<3>() = y.rightCols<3>();
-        dy.col(3) = stay * nx + n.x() * along - 2.0 * damping_ * vx + 2.0 * turning_ * vy;
-        dy.col(4) = stay * ny + n.y() * along - 2.0 * damping_ * vy - 2.0 * turning_ * vx;
-        dy.col(5) = stay * nz + n.z() * along - 2.0 * damping_ * vz;
+        dy.col(3) = stay * nx + n.x() * along - drag * vx - v.x() * d_drag + 2.0 * turning_ * vy;
+        dy.col(4) = stay * ny + n.y() * along - drag * vy - v.y() * d_drag - 2.0 * turning_ * vx;
+        dy.col(5) = stay * nz + n.z() * along - drag * vz - v.z() * d_drag;
 
         const Eigen::Vector3d by_turning = -2.0 * (turned - n * lift);
-        dy.row(0).tail<3>() = gravity_ - n * pull - 2.0 * damping_ * v + turning_ * by_turning;
+        dy.row(0).tail<3>() = gravity_ - n * pull - drag * v + turning_ * by_turning;
         dy.row(kRowOmega).tail<3>() += across(down_, n);
         dy.row(kRowTilt).tail<3>() += across(tilts_.col(0), n);
         dy.row(kRowTilt + 1).tail<3>() += across(tilts_.col(1), n);
         dy.row(kRowDamping).tail<3>() -= 2.0 * v;
+        dy.row(kRowQuadratic).tail<3>() -= speed * v;
         dy.row(kRowTurning).tail<3>() += by_turning;
     }
 
@@ -77,6 +84,7 @@ private:
     Eigen::Vector3d down_;
     Eigen::Matrix<double, 3, 2> tilts_;
     double damping_;
+    double quadratic_;
     double turning_;
 };
 
@@ -116,6 +124,7 @@ SwingParameters moved(const SwingParameters& parameters, const SwingVector& step
     p.omega0_sq += step[kOmega0Sq];
     p.tilt += step.segment<2>(kTilt);
     p.damping += step[kDamping];
+    p.quadratic += step[kQuadratic];
     p.turning += step[kTurning];
     return p;
 }
@@ -149,7 +158,7 @@ SwingJacobian SwingPath::jacobian() const {
     SwingJacobian j;
     j.middleCols<3>(kPivot).setIdentity();
     j.col(kRadius) = state_.row(0).head<3>();
-    j.rightCols<9>() = start_.radius * state_.bottomLeftCorner<9, 3>().transpose();
+    j.rightCols<10>() = start_.radius * state_.bottomLeftCorner<10, 3>().transpose();
     return j;
 }
 

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <bitset>
+
 #include <Eigen/Core>
 
 namespace kinectlab {
@@ -15,7 +17,8 @@ struct SwingParameters {
     double omega0_sq = 9.81;                          ///< 1/s²
     Eigen::Vector2d tilt = Eigen::Vector2d::Zero();   ///< of the plumb line in the lab frame: x, y
     double damping = 0.0;                             ///< amplitude falls as exp(-damping t), 1/s
-    double turning = 0.0;  ///< vertical part of the Earth's turning, rad/s
+    double quadratic = 0.0;  ///< drag that grows as the speed squared, 1/rad
+    double turning = 0.0;    ///< vertical part of the Earth's turning, rad/s
 
     /// Where things fall, length 1.
     [[nodiscard]] Eigen::Vector3d down() const {
@@ -33,9 +36,13 @@ enum SwingIndex {
     kOmega0Sq = 8,
     kTilt = 9,
     kDamping = 11,
-    kTurning = 12,
-    kSwingParameters = 13,
+    kQuadratic = 12,
+    kTurning = 13,
+    kSwingParameters = 14,
 };
+
+/// Which parameters a fit may change.
+using SwingMask = std::bitset<kSwingParameters>;
 
 using SwingVector = Eigen::Matrix<double, kSwingParameters, 1>;
 using SwingMatrix = Eigen::Matrix<double, kSwingParameters, kSwingParameters>;
@@ -48,11 +55,11 @@ using SwingJacobian = Eigen::Matrix<double, 3, kSwingParameters>;
 [[nodiscard]] SwingParameters moved(const SwingParameters& parameters, const SwingVector& step);
 
 /// Follows a swing and how it depends on the parameters, forward or backward in time.
-///   n'' = w² (d - (d·n) n) - |n'|² n - 2γ n' - 2Ω (z × n')ₜ
-/// with d down, Ω the vertical part of the Earth's turning and ₜ the part across n. The horizontal
-/// part of its turning pushes along the string; what remains across it is 1e-6 of gravity.
-/// Integrated by Dormand and Prince's fifth-order method, J. Comp. Appl. Math. 6 (1980), at steps
-/// that keep the frequency right to 1e-9.
+///   n'' = w² (d - (d·n) n) - |n'|² n - 2γ n' - β |n'| n' - 2Ω (z × n')ₜ
+/// with d down, γ the damping, β the quadratic drag, Ω the vertical part of the Earth's turning and
+/// ₜ the part across n. The horizontal part of its turning pushes along the string; what remains
+/// across it is 1e-6 of gravity. Integrated by Dormand and Prince's fifth-order method, J. Comp.
+/// Appl. Math. 6 (1980), at steps that keep the frequency right to 1e-9.
 class SwingPath {
 public:
     explicit SwingPath(const SwingParameters& start);
@@ -66,7 +73,7 @@ public:
 
     /// One row for the motion itself, then one for each parameter that shapes it; the columns are
     /// n and dn/dt.
-    using State = Eigen::Matrix<double, 10, 6>;
+    using State = Eigen::Matrix<double, 11, 6>;
 
 private:
     SwingParameters start_;

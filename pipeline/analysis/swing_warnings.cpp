@@ -15,6 +15,7 @@ namespace {
 constexpr double kFrame = 0.05;  // s
 constexpr double kDegree = std::numbers::pi / 180.0;
 constexpr double kFewPeriods = 10.0;
+constexpr double kUnsafe = 60.0 * kDegree;
 
 Measurement named(const std::vector<Measurement>& all, std::string_view name) {
     const auto it =
@@ -53,7 +54,7 @@ std::vector<std::string> swing_warnings(
             "The last {:.1f} s were not a free swing and were left out.", left_out_after
         ));
     const Measurement g = named(measurements, "g");
-    if (periods < kFewPeriods && statistics_dominate(g))
+    if (periods < kFewPeriods && (g.value == 0.0 || statistics_dominate(g)))
         warnings.push_back(fmt::format(
             "Only {:.1f} periods were recorded; ten or more give a much better g.", periods
         ));
@@ -63,13 +64,22 @@ std::vector<std::string> swing_warnings(
         off.push_back(r.norm());
     const double noise = median(std::move(off));
     const double amplitude = named(measurements, "amplitude").value;
-    const double path = settings.length_m * std::sin(amplitude);
+    const char* unit = settings.metric ? "mm" : "px";
+    const double path = fit.parameters.radius * std::sin(amplitude);
     if (path < 20.0 * noise)
         warnings.push_back(fmt::format(
-            "The swing of {:.1f} mm to each side is small against the positions' noise of {:.1f} "
-            "mm; release it from a larger angle.",
+            "The swing of {:.1f} {} to each side is small against the positions' noise of {:.1f} "
+            "{}; release it from a larger angle.",
             path * 1e3,
-            noise * 1e3
+            unit,
+            noise * 1e3,
+            unit
+        ));
+    if (amplitude > kUnsafe)
+        warnings.push_back(fmt::format(
+            "The amplitude is {:.0f}°: strings go slack and supports give way near 90°, so this "
+            "result is not safe.",
+            amplitude / kDegree
         ));
 
     const auto frames = static_cast<double>(last.index - first.index + 1);
@@ -95,22 +105,26 @@ std::vector<std::string> swing_warnings(
             fit.reduced_chi2
         ));
 
-    const double radius_off = std::abs(fit.free_radius - settings.length_m);
-    const double radius_u = std::hypot(fit.free_radius_u, swing_priors(settings).radius_sigma);
-    if (radius_off > 4.0 * radius_u && radius_off > 0.03 * settings.length_m)
-        warnings.push_back(fmt::format(
-            "The arc's radius is {:.2f} m but the length given is {:.2f} m; g rests on that "
-            "length.",
-            fit.free_radius,
-            settings.length_m
-        ));
+    if (settings.length_m && settings.metric) {
+        const double radius_off = std::abs(fit.free_radius - *settings.length_m);
+        const double radius_u = std::hypot(
+            fit.free_radius_u, swing_priors(settings, fit.parameters.radius).radius_sigma
+        );
+        if (radius_off > 4.0 * radius_u && radius_off > 0.03 * *settings.length_m)
+            warnings.push_back(fmt::format(
+                "The arc's radius is {:.2f} m but the length given is {:.2f} m; g rests on that "
+                "length.",
+                fit.free_radius,
+                *settings.length_m
+            ));
+    }
     if (fit.parameters.tilt.norm() > 2.0 * kDegree)
         warnings.push_back(fmt::format(
             "The swing's plumb line is {:.1f}° off the lab's vertical; is the camera's place set "
             "right?",
             fit.parameters.tilt.norm() / kDegree
         ));
-    if (settings.on_earth && !is_earthly(g.value, 4.0 * g.u))
+    if (settings.on_earth && g.value != 0.0 && !is_earthly(g.value, 4.0 * g.u))
         warnings.push_back(fmt::format(
             "g = {:.3f} m/s² is not found on the Earth's ground ({} to {} m/s²); is the length "
             "right?",
@@ -122,7 +136,8 @@ std::vector<std::string> swing_warnings(
     if (damping.value < -4.0 * damping.u)
         warnings.emplace_back("The swing grew by itself; something pushes the pendulum.");
     const double earth = earth_turning(settings.latitude_deg);
-    if (std::abs(fit.free_turning - earth) > 5.0 * fit.free_turning_u)
+    const bool turning_known = !settings.flat && !settings.turning_free;
+    if (turning_known && std::abs(fit.free_turning - earth) > 5.0 * fit.free_turning_u)
         warnings.push_back(fmt::format(
             "The swing's plane turns by {:.0f} °/h, the Earth would turn it by {:.0f} °/h; the "
             "suspension may favour a direction.",

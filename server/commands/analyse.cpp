@@ -25,6 +25,7 @@ namespace {
 using experiments::Values;
 
 constexpr std::size_t kMostTableBytes = 256U << 20U;
+constexpr double kHandHeldTilt = 0.05;  // rad: nobody says how level a table's frame is
 
 struct Arguments {
     std::string experiment;
@@ -61,7 +62,10 @@ std::optional<int> parse(int argc, char** argv, Arguments& arguments) {
         "With z it goes up, without it y does"
     );
     app.add_option(
-        "--units", arguments.units, "of a table, such as cm or t=ms,x=cm,y=cm; else s and m"
+        "--units",
+        arguments.units,
+        "of a table, such as cm or t=ms,x=cm,y=cm; else s and m. With px what needs no scale is "
+        "measured"
     );
     app.add_option(
            "--set",
@@ -261,15 +265,15 @@ int analyse(int argc, char** argv) {
     material->provenance.program_version = config::version();
     const auto free =
         since(material->trajectories, experiments::recorded_release(arguments.recording));
+    auto conditions = conditions_of(
+        material->provenance.camera, experiments::recorded_truth(*definition, arguments.recording)
+    );
+    if (is_table(arguments.recording)) {
+        conditions.metric = !layout->pixels;
+        conditions.tilt_u_rad = kHandHeldTilt;
+    }
     const auto evaluation = experiments::evaluate(
-        {*definition,
-         *values,
-         free,
-         conditions_of(
-             material->provenance.camera,
-             experiments::recorded_truth(*definition, arguments.recording)
-         ),
-         {}},
+        {*definition, *values, free, conditions, {}},
         material->provenance,
         material->provenance.first_frame
     );

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "pipeline/analysis/analysis.hpp"
 #include "pipeline/core/nearest_name.hpp"
 
 namespace kinectlab::experiments {
@@ -39,6 +40,18 @@ std::string range_of(const Parameter& parameter) {
         "give a number from " + to_text(parameter.min) + " to " + to_text(parameter.max);
     if (parameter.unit != "1") text += " (" + parameter.unit + ")";
     return text;
+}
+
+/// Whether the analysis can do nothing without this parameter.
+bool is_required(const Definition& definition, const std::string& parameter) {
+    const auto method = analysis_method(definition.analysis.method);
+    if (!method) return false;
+    const auto feeds = [&](const AnalysisSetting& setting) {
+        const auto source = definition.analysis.settings.find(setting.name);
+        return setting.required && source != definition.analysis.settings.end() &&
+               source->second.setting.parameter == parameter;
+    };
+    return std::any_of((*method)->settings.begin(), (*method)->settings.end(), feeds);
 }
 
 }  // namespace
@@ -75,7 +88,8 @@ Result<Values> validate(const Definition& definition, const Values& given, RigKi
         const auto found = given.find(name);
         if (found != given.end())
             values[name] = found->second;
-        else if (const auto otherwise = find(definition, name)->default_value)
+        else if (const auto otherwise = find(definition, name)->default_value;
+                 otherwise && (rig != RigKind::elsewhere || is_required(definition, name)))
             values[name] = *otherwise;
     }
     return values;

@@ -113,7 +113,8 @@ enum class RigKind { simulated, real, elsewhere };
 
 /// The values of all parameters: those given, the others by default. Errors name the parameter:
 /// unknown (with the nearest valid name), out of range, NaN, or not to be set on a real rig. What
-/// moved elsewhere is not bound to a rig's ranges: what cannot be negative has any value from 0.
+/// moved elsewhere is not bound to a rig's ranges: what cannot be negative has any value from 0;
+/// nor has it a rig's defaults, but for what the analysis cannot do without.
 [[nodiscard]] Result<Values> validate(
     const Definition& definition, const Values& given, RigKind rig = RigKind::simulated
 );

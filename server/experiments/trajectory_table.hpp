@@ -16,6 +16,7 @@ struct TableLayout {
     /// that is called so. Without z the motion is two-dimensional.
     std::array<std::string, 4> column;
     std::array<double, 4> scale{1.0, 1.0, 1.0, 1.0};  ///< to s and m
+    bool pixels = false;  ///< of unknown size: a thousand count as a metre
 
     bool operator==(const TableLayout&) const = default;
 };

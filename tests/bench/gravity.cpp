@@ -24,7 +24,7 @@ Run analysed(const Trajectory& trajectory) {
     const auto result = analyse_pendulum(trajectory, settings);
     if (!result) throw std::runtime_error(to_text(result.error()));
     const kinectlab::Measurement& g = result->measurements.front();
-    return {g.value - kTrueG, g.u, small_angle_g(trajectory, settings.length_m) - kTrueG};
+    return {g.value - kTrueG, g.u, small_angle_g(trajectory, *settings.length_m) - kTrueG};
 }
 
 /// Two seeds at once.

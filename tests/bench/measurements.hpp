@@ -22,6 +22,9 @@ Figures measure_gravity_khoshelham();
 Figures measure_gravity_kinect();
 Figures measure_coverage();
 Figures measure_coverage_bodies();
+Figures measure_pendulum_coverage();
+Figures measure_foucault_coverage();
+Figures measure_pendulum_speed();
 Figures measure_box_tracking();
 Figures measure_recognition();
 Figures measure_live_latency();
@@ -55,6 +58,9 @@ inline constexpr std::array kMeasurements{
     Measurement{"g, kinect noise", measure_gravity_kinect},
     Measurement{"coverage, thrown rolling sliding ball, free driven spring", measure_coverage},
     Measurement{"coverage bodies: collision, rigid body, path", measure_coverage_bodies},
+    Measurement{"coverage pendulum", measure_pendulum_coverage},
+    Measurement{"coverage foucault", measure_foucault_coverage},
+    Measurement{"analyse a run of 30 s from its poses", measure_pendulum_speed},
     Measurement{"box of 16x10x12 cm at 1.2 m", measure_box_tracking},
     Measurement{"recognition of a complex object", measure_recognition},
     Measurement{"live: capture to pose at a WebSocket client, frames lost", measure_live_latency},

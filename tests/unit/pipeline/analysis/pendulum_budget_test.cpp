@@ -20,7 +20,7 @@ double line(const Measurement& m, std::string_view source) {
 }
 
 TEST(PendulumBudget, LinesAddUpToU) {
-    const auto result = analyse_pendulum(noisy_path(), {});
+    const auto result = analyse_pendulum(noisy_path(), usual_settings());
     ASSERT_TRUE(result);
     for (const auto& m : result->measurements) {
         EXPECT_NEAR(m.u, combined(m.budget), 1e-15 + 1e-12 * m.u) << m.name;
@@ -33,6 +33,31 @@ TEST(PendulumBudget, LinesAddUpToU) {
 
 double change_of(const char* name, const PendulumResult& a, const PendulumResult& b) {
     return std::abs(named(a, name).value - named(b, name).value);
+}
+
+TEST(PendulumBudget, WhatIsNotGivenIsALine) {
+    PendulumSettings settings = exact_settings(kSwing);
+    settings.body = {};
+    const auto result = analyse_pendulum(noisy_path(), settings);
+    ASSERT_TRUE(result);
+    const auto& g = named(*result, "g");
+    EXPECT_NEAR(line(g, "bob size"), g.value * 0.4 * 0.0036 / std::sqrt(3.0), 1e-5);
+    EXPECT_NEAR(line(g, "air"), g.value * 1.5 * 1.2 / 2500.0 / std::sqrt(3.0), 1e-5);
+    EXPECT_NEAR(line(g, "string"), g.value * 0.005 / 6.0 / std::sqrt(3.0), 1e-5);
+    EXPECT_NEAR(g.u, combined(g.budget), 1e-12);
+    EXPECT_GE(result->notes.size(), 4U);
+}
+
+TEST(PendulumBudget, BobAirAndStringAreCorrectedFor) {
+    Swing swing = kSwing;
+    swing.air_share = 1.2 / 600.0;
+    swing.string_share = 0.01;
+    PendulumSettings settings = exact_settings(swing);
+    const double mass = 600.0 * 4.0 / 3.0 * std::numbers::pi * std::pow(0.05, 3);
+    settings.body = {0.05, 600.0, 1.2, 0.01 * mass};
+    const auto result = analyse_pendulum(generate(swing), settings);
+    ASSERT_TRUE(result);
+    EXPECT_NEAR(named(*result, "g").value, 9.81, 2e-5);
 }
 
 TEST(PendulumBudget, ClockGoesByTheFormula) {
@@ -49,7 +74,7 @@ TEST(PendulumBudget, LengthLineIsWhatAWrongLengthDoes) {
     PendulumSettings settings = exact_settings(kSwing);
     settings.length_u_m = 1e-3;
     const auto right = analyse_pendulum(noisy_path(), settings);
-    settings.length_m += 1e-3;
+    *settings.length_m += 1e-3;
     const auto wrong = analyse_pendulum(noisy_path(), settings);
     ASSERT_TRUE(right && wrong);
     const double line_of_g = line(named(*right, "g"), "length");

@@ -15,7 +15,7 @@ using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::Not;
 
-Error error_of(const Trajectory& path, const PendulumSettings& settings = {}) {
+Error error_of(const Trajectory& path, const PendulumSettings& settings = usual_settings()) {
     const auto result = analyse_pendulum(path, settings);
     if (!result) return result.error();
     ADD_FAILURE() << "a number came out: g = " << result->measurements.front().value;
@@ -23,7 +23,7 @@ Error error_of(const Trajectory& path, const PendulumSettings& settings = {}) {
 }
 
 std::vector<std::string> warnings_of(
-    const Trajectory& path, const PendulumSettings& settings = {}
+    const Trajectory& path, const PendulumSettings& settings = usual_settings()
 ) {
     const auto result = analyse_pendulum(path, settings);
     if (result) return result->warnings;
@@ -68,7 +68,7 @@ TEST(PendulumErrors, BroughtThereByALargerMotionThanItsSwing) {
         if (i < 100) before.samples[i].p_lab += aside;
     }
     before.samples.insert(before.samples.end(), path.samples.begin(), path.samples.end());
-    const auto result = analyse_pendulum(with_noise(before, 3), {});
+    const auto result = analyse_pendulum(with_noise(before, 3), usual_settings());
     ASSERT_TRUE(result) << to_text(result.error());
     EXPECT_NEAR(result->measurements.front().value, 9.81, 0.03);
 }
@@ -144,7 +144,7 @@ TEST(PendulumErrors, TimesThatDoNotIncrease) {
 
 TEST(PendulumErrors, SettingsOutOfRangeAreNamed) {
     const auto field_of = [](auto change) {
-        PendulumSettings settings;
+        PendulumSettings settings = usual_settings();
         change(settings);
         const Error error = error_of(generate({.seconds = 7.0}), settings);
         EXPECT_EQ(error.code, ErrorCode::invalid_argument);
@@ -154,7 +154,7 @@ TEST(PendulumErrors, SettingsOutOfRangeAreNamed) {
     EXPECT_EQ(field_of([](auto& s) { s.length_m = 0.0; }), "length_m");
     EXPECT_EQ(field_of([](auto& s) { s.length_m = std::nan(""); }), "length_m");
     EXPECT_EQ(field_of([](auto& s) { s.length_u_m = -1e-3; }), "length_u_m");
-    EXPECT_EQ(field_of([](auto& s) { s.bob_radius_m = 1.5; }), "bob_radius_m");
+    EXPECT_EQ(field_of([](auto& s) { s.body.bob_radius_m = 1.5; }), "bob_radius_m");
     EXPECT_EQ(field_of([](auto& s) { s.latitude_deg = 91.0; }), "latitude_deg");
     EXPECT_EQ(field_of([](auto& s) { s.depth_scale_u = -1.0; }), "depth_scale_u");
     EXPECT_EQ(field_of([](auto& s) { s.clock_u = std::nan(""); }), "clock_u");
@@ -166,9 +166,11 @@ TEST(PendulumWarnings, NoneForAGoodRun) {
 
 TEST(PendulumWarnings, FewPeriods) {
     const Trajectory path = with_noise(generate({.seconds = 9.0}), 1);
-    const PendulumSettings precise{.length_u_m = 1e-6, .depth_scale_u = 1e-6, .clock_u = 1e-6};
+    PendulumSettings precise = usual_settings();
+    precise.length_u_m = precise.depth_scale_u = precise.clock_u = 1e-6;
     EXPECT_THAT(warnings_of(path, precise), Contains(HasSubstr("periods were recorded")));
-    const PendulumSettings rough{.length_u_m = 0.02};
+    PendulumSettings rough = usual_settings();
+    rough.length_u_m = 0.02;
     EXPECT_THAT(warnings_of(path, rough), Not(Contains(HasSubstr("periods were recorded"))))
         << "more periods would not help: the length decides";
 }
@@ -181,7 +183,7 @@ TEST(PendulumWarnings, SmallSwing) {
 }
 
 TEST(PendulumWarnings, WrongLength) {
-    PendulumSettings settings;
+    PendulumSettings settings = usual_settings();
     settings.length_m = 1.1;
     EXPECT_THAT(
         warnings_of(with_noise(generate({.amplitude_deg = 20}), 1), settings),
@@ -192,9 +194,10 @@ TEST(PendulumWarnings, WrongLength) {
 TEST(PendulumWarnings, GravityOfAnotherPlanet) {
     const Trajectory path = with_noise(generate({.g = 1.62}), 1);
     EXPECT_THAT(warnings_of(path), Contains(HasSubstr("not found on the Earth")));
-    EXPECT_THAT(
-        warnings_of(path, {.on_earth = false}), Not(Contains(HasSubstr("not found on the Earth")))
-    ) << "a simulation was asked for it";
+    PendulumSettings simulated = usual_settings();
+    simulated.on_earth = false;
+    EXPECT_THAT(warnings_of(path, simulated), Not(Contains(HasSubstr("not found on the Earth"))))
+        << "a simulation was asked for it";
 }
 
 TEST(PendulumWarnings, LostFrames) {

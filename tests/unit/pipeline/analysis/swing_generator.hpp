@@ -23,8 +23,11 @@ struct Swing {
     double length = 1.0;
     double bob_radius = 0.05;
     double amplitude_deg = 10.0;
-    double sideways = 0.0;   ///< velocity at the release across the swing, m/s
-    double damping = 0.002;  ///< 1/s
+    double sideways = 0.0;      ///< velocity at the release across the swing, m/s
+    double damping = 0.002;     ///< 1/s
+    double quadratic = 0.0;     ///< drag as the speed squared, 1/rad
+    double air_share = 0.0;     ///< mass of the displaced air over the bob's
+    double string_share = 0.0;  ///< mass of the string over the bob's
     double latitude_deg = 45.0;
     double seconds = 30.0;  ///< of free swing
     double rest = 0.0;      ///< s hanging still first, then drawn aside in 2 s
@@ -44,10 +47,12 @@ inline Eigen::Vector3d acceleration(const Swing& s, const Bob& b) {
     const double latitude = s.latitude_deg * std::numbers::pi / 180.0;
     const Eigen::Vector3d earth = 2.0 * std::numbers::pi / 86164.09 *
                                   Eigen::Vector3d(0.0, std::cos(latitude), std::sin(latitude));
-    const double share =
-        s.length * s.length / (s.length * s.length + 0.4 * s.bob_radius * s.bob_radius);
-    Eigen::Vector3d a =
-        Eigen::Vector3d(0, 0, -s.g * share) - 2.0 * s.damping * b.v - 2.0 * earth.cross(b.v);
+    const double weight = 1.0 + s.string_share / 2.0 - s.air_share;
+    const double inertia = 1.0 + 0.4 * s.bob_radius * s.bob_radius / (s.length * s.length) +
+                           s.string_share / 3.0 + s.air_share / 2.0;
+    Eigen::Vector3d a = Eigen::Vector3d(0, 0, -s.g * weight / inertia) -
+                        (2.0 * s.damping + s.quadratic * b.v.norm() / s.length) * b.v -
+                        2.0 * earth.cross(b.v);
     const double pull = (b.v.squaredNorm() + b.r.dot(a)) / b.r.squaredNorm();
     return a - pull * b.r;
 }
@@ -130,9 +135,25 @@ inline Trajectory with_noise(Trajectory trajectory, unsigned seed, const Noise& 
     return trajectory;
 }
 
-/// Settings without any uncertainty but that of the positions.
+/// Settings without any uncertainty but that of the positions, of a bob in a vacuum on a string
+/// without mass.
 inline PendulumSettings exact_settings(const Swing& s) {
-    return {s.length, 0.0, s.bob_radius, s.latitude_deg, 0.0, 0.0};
+    PendulumSettings settings;
+    settings.length_m = s.length;
+    settings.length_u_m = 0.0;
+    settings.body = {s.bob_radius, 0.0, 0.0, 0.0};
+    settings.latitude_deg = s.latitude_deg;
+    settings.depth_scale_u = 0.0;
+    settings.clock_u = 0.0;
+    return settings;
+}
+
+/// A metre, known as a ruler tells it, and the bob of a Swing.
+inline PendulumSettings usual_settings() {
+    PendulumSettings settings;
+    settings.length_m = 1.0;
+    settings.body = {0.05, 0.0, 0.0, 0.0};
+    return settings;
 }
 
 inline const Measurement& named(const PendulumResult& result, std::string_view name) {

@@ -18,6 +18,7 @@ SwingParameters wide_ellipse() {
     p.omega0_sq = 10.5;
     p.tilt = {0.01, -0.02};
     p.damping = 0.03;
+    p.quadratic = 0.2;
     p.turning = 0.05;
     return p;
 }
@@ -61,6 +62,7 @@ TEST(SwingModel, PeriodFactorFollowsItsSeries) {
 TEST(SwingModel, TurningAngleIsTheWidestOfThePath) {
     SwingParameters p = wide_ellipse();
     p.damping = 0.0;
+    p.quadratic = 0.0;
     p.turning = 0.0;
     SwingPath path(p);
     double widest = 0.0;

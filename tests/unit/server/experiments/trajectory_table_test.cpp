@@ -103,7 +103,7 @@ TEST(TrajectoryTable, GivesGWithAnUncertaintyThatItsNoiseExplains) {
     PendulumSettings settings;
     settings.length_m = kLength;
     settings.length_u_m = 1e-4;
-    settings.bob_radius_m = 0.0;
+    settings.body = {0.0, 0.0, 0.0, 0.0};
     settings.latitude_deg = 0.0;
     const auto result = analyse_pendulum(trajectory, settings);
     ASSERT_TRUE(result) << to_text(result.error());
@@ -153,10 +153,22 @@ TEST(TableLayout, RefusesWhatItDoesNotKnow) {
     EXPECT_EQ(parse_table_layout("q=1", "").error().field, "--columns");
     EXPECT_EQ(parse_table_layout("t=", "").error().field, "--columns");
     EXPECT_EQ(parse_table_layout("t=1,t=2", "").error().field, "--columns");
-    EXPECT_EQ(parse_table_layout("", "px").error().field, "--units");
     EXPECT_EQ(parse_table_layout("", "x=px").error().field, "--units");
+    EXPECT_EQ(parse_table_layout("", "px,y=cm").error().field, "--units");
+    EXPECT_EQ(parse_table_layout("", "inch").error().field, "--units");
     EXPECT_EQ(parse_table_layout("", "t=m").error().field, "--units");
     EXPECT_EQ(parse_table_layout("", "mm,t=ms").value().scale[3], 1e-3);
+}
+
+TEST(TableLayout, PixelsAreThousandthsOfNoMetre) {
+    for (const char* units : {"px", "x=px,y=px", "t=ms,x=px,y=px,z=px"}) {
+        const auto layout = parse_table_layout("", units);
+        ASSERT_TRUE(layout) << units;
+        EXPECT_TRUE(layout->pixels);
+        EXPECT_EQ(layout->scale[1], 1e-3);
+        EXPECT_EQ(layout->scale[3], 1e-3);
+    }
+    EXPECT_FALSE(parse_table_layout("", "cm").value().pixels);
 }
 
 }  // namespace
