@@ -67,7 +67,7 @@ public:
             });
             const bool found = hit != named.end() && (hit->p_cam - balls[ball].centre_cam).norm() <=
                                                          1.3 * balls[ball].radius;
-            if (visible[ball]) ++true_;
+            if (visible[ball] || found) ++true_;
             if (!found) {
                 if (visible[ball] && last_[ball] != 0) broken_[ball] = true;
                 continue;
