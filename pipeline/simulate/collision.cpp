@@ -13,8 +13,8 @@ namespace {
 constexpr std::array kRanges = {
     ParameterRange{"mass_a_kg", 0.02, 2.0, 0.3},
     ParameterRange{"mass_b_kg", 0.02, 2.0, 0.2},
-    ParameterRange{"radius_a_m", 0.025, 0.06, 0.045},
-    ParameterRange{"radius_b_m", 0.025, 0.06, 0.045},
+    ParameterRange{"radius_a_m", 0.025, 0.06, 0.05},
+    ParameterRange{"radius_b_m", 0.025, 0.06, 0.035},
     ParameterRange{"speed_m_s", 0.05, 1.5, 0.5},
     ParameterRange{"restitution", 0.0, 1.0, 0.9},
     ParameterRange{"offset_m", -0.1, 0.1, 0.0},

@@ -18,7 +18,7 @@ namespace kinectlab::simulate {
 ///
 /// | parameter | range | usual |
 /// | mass_a_kg, mass_b_kg | 0.02 to 2 | 0.3, 0.2 |
-/// | radius_a_m, radius_b_m | 0.025 to 0.06 | 0.045, 0.045 |
+/// | radius_a_m, radius_b_m | 0.025 to 0.06 | 0.05, 0.035 |
 /// | speed_m_s | 0.05 to 1.5 | 0.5 |
 /// | restitution, e | 0 to 1 | 0.9 |
 /// | offset_m, of B towards +y | -0.1 to 0.1 | 0 |

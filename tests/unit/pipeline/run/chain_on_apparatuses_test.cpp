@@ -126,11 +126,10 @@ TEST(ChainOnApparatuses, FollowsAMassOnASpring) {
     expect_followed(follow({"spring", {}}, {ball("ball", 0.04)}, 3.0).front(), 85);
 }
 
-TEST(ChainOnApparatuses, FollowsEqualBallsThroughTheirCollision) {
+TEST(ChainOnApparatuses, FollowsTwoBallsThroughTheirCollision) {
     for (const double offset : {0.0, 0.03}) {
-        const auto balls = follow(
-            {"collision", {{"offset_m", offset}}}, {ball("a", 0.045), ball("b", 0.045)}, 3.5
-        );
+        const auto balls =
+            follow({"collision", {{"offset_m", offset}}}, {ball("a", 0.05), ball("b", 0.035)}, 3.5);
         expect_followed(balls[0], 100);
         expect_followed(balls[1], 100);
     }

@@ -151,7 +151,8 @@ TEST(Apparatus, RefusesWhatItIsNotOrHasNot) {
     EXPECT_EQ(field_of("sprong", {}), "apparatus");
     for (const std::string& name : apparatus_names()) {
         EXPECT_EQ(field_of(name, {{"colour", 1.0}}), "colour") << name;
-        for (const ParameterRange& range : *parameters_of(name)) {
+        const auto ranges = parameters_of(name);
+        for (const ParameterRange& range : *ranges) {
             const std::string parameter(range.name);
             EXPECT_EQ(field_of(name, {{parameter, range.maximum + 1.0}}), parameter) << name;
             EXPECT_EQ(field_of(name, {{parameter, std::nan("")}}), parameter) << name;
