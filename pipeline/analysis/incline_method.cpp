@@ -198,7 +198,7 @@ void measure(
     } else {
         out.measurements.push_back(by_rolling);
     }
-    if (drag.u < 0.5 * kDragUnknown) out.measurements.push_back(drag);
+    if (drag.u < 0.7 * kDragUnknown) out.measurements.push_back(drag);
 }
 
 Result<AnalysisOutcome> run(
@@ -243,7 +243,7 @@ Result<AnalysisOutcome> run(
         return p;
     };
     Stretch stretch = grow_stretch(samples, roll->stretch.samples, predict, 5);
-    stretch = without_ends(stretch, kEndShare, stretch.begin > 0, stretch.end < samples.size());
+    stretch = without_ends(samples, stretch, kEndShare, 3);
     const double begin = samples[stretch.begin].t;
     const PathModel model = model_from(begin);
     const auto fit = fit_to(stretch, model, begin);

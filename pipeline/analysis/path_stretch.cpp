@@ -246,11 +246,17 @@ Stretch grow_stretch(
     return known;
 }
 
-Stretch without_ends(const Stretch& stretch, double share, bool at_begin, bool at_end) {
-    const auto cut = std::max<std::size_t>(
-        1, static_cast<std::size_t>(share * static_cast<double>(stretch.size()))
-    );
-    return {stretch.begin + (at_begin ? cut : 0), stretch.end - (at_end ? cut : 0)};
+Stretch without_ends(
+    std::span<const PositionSample> samples,
+    const Stretch& stretch,
+    double share,
+    std::size_t fewest
+) {
+    const auto cut =
+        std::max(fewest, static_cast<std::size_t>(share * static_cast<double>(stretch.size())));
+    return {
+        stretch.begin + (stretch.begin > 0 ? cut : 0),
+        stretch.end - (stretch.end < samples.size() ? cut : 0)};
 }
 
 }  // namespace kinectlab

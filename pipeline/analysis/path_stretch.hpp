@@ -53,10 +53,13 @@ using StretchPath = std::function<
     int bad_blocks = 1
 );
 
-/// Without a share of it at each end (at least one sample), where it may still be under another
-/// law too weakly to be seen.
+/// Without a share of it (at least `fewest` samples, half the block by which it grew) at each end
+/// that is not the recording's: there it may still be under another law too weakly to be seen.
 [[nodiscard]] Stretch without_ends(
-    const Stretch& stretch, double share, bool at_begin, bool at_end
+    std::span<const PositionSample> samples,
+    const Stretch& stretch,
+    double share,
+    std::size_t fewest
 );
 
 }  // namespace kinectlab

@@ -247,7 +247,7 @@ Result<AnalysisOutcome> run(
         return p;
     };
     Stretch stretch = grow_stretch(samples, found->flight.samples, predict, 4);
-    stretch = without_ends(stretch, kEndShare, stretch.begin > 0, stretch.end < samples.size());
+    stretch = without_ends(samples, stretch, kEndShare, 2);
     const double begin = samples[stretch.begin].t;
     auto moved = found->flight;
     moved.p += (begin - t0) * (moved.v + (begin - t0) / 2 * moved.a);

@@ -35,49 +35,77 @@ std::vector<double> lasting(std::span<const WhitenedSample> samples, double shar
 struct Likelihood {
     double log = 0.0;
     Array3d variance = Array3d::Zero();  ///< of the noise, for each direction
+    Array3d freedom = Array3d::Ones();   ///< how many samples it rests on
+};
+
+/// All samples below each other, three rows for each.
+struct Stack {
+    explicit Stack(std::span<const WhitenedSample> samples, Index n)
+        : j(3 * static_cast<Index>(samples.size()), n), r(3 * static_cast<Index>(samples.size())) {
+        Index row = 0;
+        for (const auto& s : samples) {
+            j.middleRows<3>(row) = s.j;
+            r.segment<3>(row) = s.residual;
+            row += 3;
+        }
+    }
+    MatrixXd j;
+    VectorXd r;
 };
 
 Likelihood restricted_likelihood(
-    std::span<const WhitenedSample> samples, const std::vector<double>& phi, const VectorXd& prior
+    const Stack& all, const std::vector<double>& phi, const VectorXd& prior
 ) {
     const Index n = prior.size();
-    MatrixXd information = prior.asDiagonal();
-    VectorXd gradient = VectorXd::Zero(n);
-    std::vector<WhitenedSample> fresh(samples.begin(), samples.end());
+    Stack fresh = all;
     double log_volume = 0.0;
-    for (std::size_t i = 0; i < samples.size(); ++i) {
-        if (phi[i] > 0.0) {
-            const double rest = std::sqrt(1.0 - phi[i] * phi[i]);
-            fresh[i].residual = (samples[i].residual - phi[i] * samples[i - 1].residual) / rest;
-            fresh[i].j = (samples[i].j - phi[i] * samples[i - 1].j) / rest;
-            log_volume += 2.0 * std::log(rest);
-        }
-        information.noalias() += fresh[i].j.transpose() * fresh[i].j;
-        gradient.noalias() += fresh[i].j.transpose() * fresh[i].residual;
+    for (std::size_t i = 1; i < phi.size(); ++i) {
+        if (phi[i] == 0.0) continue;
+        const auto row = 3 * static_cast<Index>(i);
+        const double rest = std::sqrt(1.0 - phi[i] * phi[i]);
+        fresh.j.middleRows<3>(row) -= phi[i] * all.j.middleRows<3>(row - 3);
+        fresh.j.middleRows<3>(row) /= rest;
+        fresh.r.segment<3>(row) -= phi[i] * all.r.segment<3>(row - 3);
+        fresh.r.segment<3>(row) /= rest;
+        log_volume += 2.0 * std::log(rest);
     }
+    MatrixXd information = fresh.j.transpose() * fresh.j;
+    information.diagonal() += prior;
+    const VectorXd gradient = fresh.j.transpose() * fresh.r;
     const VectorXd scale = information.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
     const Eigen::LDLT<MatrixXd> solver(scale.asDiagonal() * information * scale.asDiagonal());
     const VectorXd moved =
         scale.asDiagonal() * solver.solve(VectorXd(scale.asDiagonal() * gradient));
     const MatrixXd inverse =
         scale.asDiagonal() * solver.solve(MatrixXd::Identity(n, n)) * scale.asDiagonal();
-    Array3d squares = Array3d::Zero();
-    Array3d spent = Array3d::Zero();
-    for (const auto& s : fresh) {
-        squares += (s.residual - s.j * moved).array().square();
-        spent += (s.j * inverse).cwiseProduct(s.j).rowwise().sum().array();
-    }
-    const auto count = static_cast<double>(samples.size());
+    const VectorXd left = (fresh.r - fresh.j * moved).cwiseAbs2();
+    const VectorXd leverage = (fresh.j * inverse).cwiseProduct(fresh.j).rowwise().sum();
+    const auto count = static_cast<double>(phi.size());
     Likelihood out;
     out.log =
         -0.5 * (solver.vectorD().array().max(1e-300).log().sum() - 2.0 * scale.array().log().sum());
     for (Index k = 0; k < 3; ++k) {
-        const double freedom = std::max(count - spent[k], 1.0);
-        out.variance[k] = squares[k] / freedom;
+        double squares = 0.0;
+        double spent = 0.0;
+        for (Index row = k; row < left.size(); row += 3) {
+            squares += left[row];
+            spent += leverage[row];
+        }
+        out.freedom[k] = std::max(count - spent, 1.0);
+        out.variance[k] = squares / out.freedom[k];
         if (out.variance[k] < kNothing) continue;
-        out.log -= 0.5 * (freedom * std::log(out.variance[k]) + log_volume);
+        out.log -= 0.5 * (out.freedom[k] * std::log(out.variance[k]) + log_volume);
     }
     return out;
+}
+
+/// Student's factor squared, for 68 %, of a variance known from so few samples that last: those of
+/// `share` count as (1 - share²)/(1 + share²) each (Bayley and Hammersley, J. R. Stat. Soc. Suppl.
+/// 8 (1946)).
+Array3d widening(const Array3d& freedom, double share) {
+    const double worth = (1.0 - share * share) / (1.0 + share * share);
+    const Array3d one_over = (freedom * worth).max(1.0).inverse();
+    return (1.0 + 0.5 * one_over + 0.25 * one_over.square()).square();
 }
 
 MatrixXd sandwich(
@@ -107,10 +135,11 @@ MatrixXd covariance_by_lasting_noise(
     for (std::size_t i = 1; i < samples.size(); ++i)
         steps.push_back(samples[i].t - samples[i - 1].t);
     const double step = steps.empty() ? 1.0 : median(std::move(steps));
+    const Stack stack(samples, prior.size());
     std::vector<Likelihood> all;
     double best = -1e300;
     for (const double share : kShares) {
-        all.push_back(restricted_likelihood(samples, lasting(samples, share, step), prior));
+        all.push_back(restricted_likelihood(stack, lasting(samples, share, step), prior));
         best = std::max(best, all.back().log);
     }
     MatrixXd sum = MatrixXd::Zero(c.rows(), c.cols());
@@ -120,7 +149,8 @@ MatrixXd covariance_by_lasting_noise(
         const double high = kShares[std::min(k + 1, kShares.size() - 1)];
         const double weight = (high - low) * std::exp(all[k].log - best);
         if (weight < 1e-6) continue;
-        sum += weight * sandwich(samples, lasting(samples, kShares[k], step), all[k].variance, c);
+        const Array3d variance = all[k].variance * widening(all[k].freedom, kShares[k]);
+        sum += weight * sandwich(samples, lasting(samples, kShares[k], step), variance, c);
         weights += weight;
     }
     return sum / weights;

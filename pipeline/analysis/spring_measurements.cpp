@@ -21,6 +21,10 @@ double omega(const VectorXd& x) {
     return x[kSpringOmega];
 }
 
+double free_amplitude(const VectorXd& x) {
+    return std::hypot(x[kSpringCos], x[kSpringSin]);
+}
+
 double resonance(const VectorXd& x) {
     const double square = omega(x) * omega(x) - 2.0 * x[kSpringDamping] * x[kSpringDamping];
     return std::sqrt(square) / (2.0 * pi);
@@ -81,9 +85,7 @@ void tell_drag_law(AnalysisOutcome& out, const Measurement& linear, const Measur
         );
 }
 
-void add_free(
-    AnalysisOutcome& out, const PathBudget& budget, const PathFit& fit, bool metric, double prior_u
-) {
+void add_free(AnalysisOutcome& out, const PathBudget& budget, bool metric, double prior_u) {
     const Measurement quadratic = budget.measure(
         "quadratic_drag", "1/m", [](const VectorXd& x) { return x[kSpringQuadratic]; }, {-1, 0}
     );
@@ -93,13 +95,7 @@ void add_free(
     tell_drag_law(out, damping, quadratic);
     if (metric && quadratic.u < 0.5 * prior_u) out.measurements.push_back(quadratic);
     if (metric)
-        out.measurements.push_back(budget.measure(
-            "amplitude",
-            "m",
-            [](const VectorXd& x) { return std::hypot(x[kSpringCos], x[kSpringSin]); },
-            {1, 0}
-        ));
-    (void)fit;
+        out.measurements.push_back(budget.measure("amplitude", "m", free_amplitude, {1, 0}));
 }
 
 void add_driven(AnalysisOutcome& out, const PathBudget& budget, bool metric, bool resonance_known) {
@@ -140,7 +136,9 @@ void spring_measurements(
     const Measurement damping = budget.measure(
         "damping", "1/s", [](const VectorXd& x) { return x[kSpringDamping]; }, {0, -1}
     );
-    const bool known = frequency.u < 0.03 * frequency.value;
+    const Measurement free = budget.measure("", "", free_amplitude, {1, 0});
+    // A sine that noise makes has about three times its own uncertainty.
+    const bool known = frequency.u < 0.03 * frequency.value && free.value > 6.0 * free.u;
     if (known) {
         out.measurements.push_back(budget.measure(
             "period", "s", [](const VectorXd& x) { return 2.0 * pi / damped_omega(x); }, {0, 1}
@@ -169,7 +167,7 @@ void spring_measurements(
     if (driven)
         add_driven(out, budget, conditions.metric, known);
     else
-        add_free(out, budget, fit, conditions.metric, kSpringQuadraticUnknown / length);
+        add_free(out, budget, conditions.metric, kSpringQuadraticUnknown / length);
 }
 
 }  // namespace kinectlab

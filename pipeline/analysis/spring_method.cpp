@@ -123,9 +123,7 @@ Result<AnalysisOutcome> run(
         std::max<std::size_t>(5, static_cast<std::size_t>(std::lround(period / 4.0 / step)));
     Stretch stretch = grow_stretch(samples, guess->known, predict, block, 3);
     const double share = 0.5 * period / (samples[stretch.end - 1].t - samples[stretch.begin].t);
-    stretch = without_ends(
-        stretch, std::min(share, 0.1), stretch.begin > 0, stretch.end < samples.size()
-    );
+    stretch = without_ends(samples, stretch, std::min(share, 0.1), block / 2);
     const double begin = samples[stretch.begin].t;
     const double duration = samples[stretch.end - 1].t - begin;
     if (duration < 2.5 * period)

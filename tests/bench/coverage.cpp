@@ -11,8 +11,9 @@ namespace kinectlab::bench {
 namespace {
 
 constexpr int kSeeds = 200;
-constexpr double kWithinU = 68.0;   // %, the middle of 60 to 76
-constexpr double kWithin2U = 94.5;  // %, the middle of 90 to 99
+constexpr std::size_t kOften = 150;  // runs: a result that few runs give is a choice of those
+constexpr double kWithinU = 68.0;    // %, the middle of 60 to 76
+constexpr double kWithin2U = 94.5;   // %, the middle of 90 to 99
 
 struct Scene {
     const char* name;
@@ -78,13 +79,17 @@ Figures measure_coverage() {
                     (noise == PositionNoise::white ? ", white noise" : ", lasting noise");
                 const double one = share_within(errors, 1.0);
                 const double two = share_within(errors, 2.0);
-                const auto add = [&](const char* what, double value, std::optional<double> bound) {
-                    figures.push_back({row + what, value, "%", bound, Better::lower, {}, {}});
+                const bool often = errors.size() >= kOften;
+                const auto bound = [&](double limit) {
+                    return often ? std::optional(limit) : std::nullopt;
+                };
+                const auto add = [&](const char* what, double value, std::optional<double> limit) {
+                    figures.push_back({row + what, value, "%", limit, Better::lower, {}, {}});
                 };
                 add(", within u", one, {});
-                add(", within u: off 68", std::abs(one - kWithinU), 8.0);
+                add(", within u: off 68", std::abs(one - kWithinU), bound(8.0));
                 add(", within 2u", two, {});
-                add(", within 2u: off 94.5", std::abs(two - kWithin2U), 4.5);
+                add(", within 2u: off 94.5", std::abs(two - kWithin2U), bound(4.5));
                 figures.push_back(
                     {row + ", runs with it",
                      static_cast<double>(errors.size()),
