@@ -25,6 +25,12 @@ const quantityLabels: Record<string, string> = {
   damping: 'Damping',
   quality_factor: 'Quality factor',
   turning_rate: 'Turning of the swing plane',
+  quadratic_damping: 'Quadratic damping',
+  precession_rate: 'Turning of the swing plane',
+  latitude: 'Latitude',
+  ellipse_a: 'Half the length of the ellipse',
+  ellipse_b: 'Half the width of the ellipse',
+  airy_rate: 'Turning of the ellipse by itself',
 };
 
 const sourceLabels: Record<string, string> = {
@@ -32,6 +38,11 @@ const sourceLabels: Record<string, string> = {
   length: 'Length of the pendulum',
   clock: 'Clock of the camera',
   'depth scale': 'Depth scale of the camera',
+  'camera tilt': 'Level of the camera',
+  'model choice': 'Choice of the drag law',
+  'bob size': 'Unknown size of the bob',
+  air: 'Unknown effect of the air',
+  string: 'Unknown mass of the string',
 };
 
 /** As a student meets them: the pendulum first, then how it is measured; unknown ones last. */
