@@ -28,9 +28,10 @@ std::vector<Pair> pairs_of(std::string_view text) {
 }
 
 std::optional<std::size_t> meaning_of(const std::string& name) {
-    const auto at = name.size() == 1 ? kMeanings.find(name[0]) : std::string_view::npos;
-    if (at == std::string_view::npos) return std::nullopt;
-    return at;
+    if (name.empty()) return std::nullopt;
+    const auto* const at = std::find(kMeanings.begin(), kMeanings.end(), name.front());
+    if (name.size() != 1 || at == kMeanings.end()) return std::nullopt;
+    return static_cast<std::size_t>(at - kMeanings.begin());
 }
 
 /// Metres (thousands of pixels) or seconds in one unit; nothing for a unit of something else.

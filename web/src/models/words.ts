@@ -23,7 +23,12 @@ const quantityLabels: Record<string, string> = {
   amplitude: 'Amplitude at the start',
   quality_factor: 'Quality factor',
   turning_rate: 'Turning of the swing plane',
+  quadratic_damping: 'Quadratic damping',
   precession_rate: 'Turning of the swing plane',
+  latitude: 'Latitude',
+  ellipse_a: 'Half the length of the ellipse',
+  ellipse_b: 'Half the width of the ellipse',
+  airy_rate: 'Turning of the ellipse by itself',
   restitution: 'Coefficient of restitution',
   tracked_share: 'Share of frames in which it was seen',
   outlier_share: 'Share of outliers',
@@ -41,6 +46,11 @@ const sourceLabels: Record<string, string> = {
   statistics: 'Scatter of the measured points',
   clock: 'Clock of the camera',
   'depth scale': 'Depth scale of the camera',
+  'camera tilt': 'Level of the camera',
+  'model choice': 'Choice of the law',
+  'bob size': 'Unknown size of the bob',
+  air: 'Unknown effect of the air',
+  string: 'Unknown mass of the string',
 };
 
 /** As the experiment's definition has them; names that it lacks follow by the alphabet. */
