@@ -16,7 +16,7 @@ namespace {
 
 using std::numbers::pi;
 
-constexpr double kOnce = 0.68;   // within u: from 60 to 76 %
+constexpr double kOnce = 0.68;    // within u: from 60 to 76 %
 constexpr double kTwice = 0.945;  // within 2u: from 90 to 99 %
 
 using Values = std::map<std::string, double>;
@@ -46,8 +46,7 @@ Values truth_of(const PositionRun& run) {
     Values truth{
         {"g", run.swing.g},
         {"small_angle_period", 2.0 * pi / omega0},
-        {"period",
-         2.0 * pi / std::sqrt(p.omega0_sq / (stretch * stretch) - p.damping * p.damping)},
+        {"period", 2.0 * pi / std::sqrt(p.omega0_sq / (stretch * stretch) - p.damping * p.damping)},
         {"amplitude", turning_angle(p)},
         {"damping", p.damping},
         {"quadratic_damping", p.quadratic},
@@ -109,12 +108,22 @@ void add_shares(
         const std::string start = "coverage " + name + ", " + result;
         figures.push_back({start + " within u", once / n, "1", {}, Better::higher, {}, {}});
         figures.push_back(
-            {start + " within u, off 68 %", std::abs(once / n - kOnce), "1", 0.08, Better::lower,
-             {}, {}}
+            {start + " within u, off 68 %",
+             std::abs(once / n - kOnce),
+             "1",
+             0.08,
+             Better::lower,
+             {},
+             {}}
         );
         figures.push_back(
-            {start + " within 2u, off 94.5 %", std::abs(twice / n - kTwice), "1", 0.045,
-             Better::lower, {}, {}}
+            {start + " within 2u, off 94.5 %",
+             std::abs(twice / n - kTwice),
+             "1",
+             0.045,
+             Better::lower,
+             {},
+             {}}
         );
     }
 }
@@ -133,11 +142,21 @@ void add_scatter_of_g(
     const double scatter = std::sqrt(squares / (n - 1.0));
     const std::string start = "coverage " + name + ", g ";
     figures.push_back(
-        {start + "scatter over Cramér-Rao bound", scatter / least_scatter_of_g(run), "1", 1.1,
-         Better::lower, {}, {}}
+        {start + "scatter over Cramér-Rao bound",
+         scatter / least_scatter_of_g(run),
+         "1",
+         1.1,
+         Better::lower,
+         {},
+         {}}
     );
     figures.push_back(
-        {start + "mean error over scatter", std::abs(mean) / scatter, "1", 0.3, Better::lower, {},
+        {start + "mean error over scatter",
+         std::abs(mean) / scatter,
+         "1",
+         0.3,
+         Better::lower,
+         {},
          {}}
     );
 }

@@ -58,7 +58,8 @@ double least_scatter_of_g(const PositionRun& run) {
     for (int i = 0; i < n; ++i) {
         path.go_to(i / run.swing.rate);
         const SwingJacobian here = whiten * path.jacobian();
-        const SwingJacobian news = i == 0 ? here : SwingJacobian((here - run.kept * before) / fresh);
+        const SwingJacobian news =
+            i == 0 ? here : SwingJacobian((here - run.kept * before) / fresh);
         information += news.transpose() * news;
         before = here;
     }
