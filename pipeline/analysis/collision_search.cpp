@@ -14,14 +14,15 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kLook = 0.4;        // s to each side of a moment that may be the impact
-constexpr std::size_t kFewest = 3;   // samples of a ball on each side
-constexpr double kClearBend = 50.0;  // in squares of the noise
-constexpr double kOpposite = -0.5;   // cosine between the changes of the two velocities
-constexpr std::size_t kChunk = 6;    // samples by which a stretch grows
-constexpr double kStrongDrag = 0.3;  // 1/s, more is no uniform motion
-constexpr double kStray = 8.0;       // typical deviations from the median of five
-constexpr double kUniform = 4.0;     // standard deviations
+constexpr double kLook = 0.4;           // s to each side of a moment that may be the impact
+constexpr std::size_t kFewest = 3;      // samples of a ball on each side
+constexpr std::size_t kFewestKept = 5;  // of which the impact may be off by two
+constexpr double kClearBend = 50.0;     // in squares of the noise
+constexpr double kOpposite = -0.5;      // cosine between the changes of the two velocities
+constexpr std::size_t kChunk = 6;       // samples by which a stretch grows
+constexpr double kStrongDrag = 0.3;     // 1/s, more is no uniform motion
+constexpr double kStray = 8.0;          // typical deviations from the median of five
+constexpr double kUniform = 4.0;        // standard deviations
 
 /// Two straight lines that meet, against one.
 struct Bend {
@@ -109,8 +110,14 @@ Vector3d noise(const std::vector<Bend>& bends) {
     return variance;
 }
 
-/// Adds what lies on the side `step` (+1 or -1) of the impact while the ball keeps its velocity.
-std::size_t grow(
+/// How many samples on the side `step` (+1 or -1) of the impact show the ball keep its velocity,
+/// and how far from it in time that holds. `all` is without strays: one would bend the line.
+struct Uniform {
+    std::size_t samples = 0;
+    double reach_s = 0.0;
+};
+
+Uniform grow(
     std::span<const PositionSample> all,
     double t,
     int step,
@@ -153,7 +160,7 @@ std::size_t grow(
         if (median(std::move(off)) > 1.0) break;
         taken = end;
     }
-    return taken;
+    return {taken, taken == 0 ? 0.0 : std::abs(side[taken - 1]->t - t)};
 }
 
 }  // namespace
@@ -215,19 +222,22 @@ Result<Impact> find_impact(
         );
     const std::array<std::span<const PositionSample>, 2> all{all_a, all_b};
     for (std::size_t k = 0; k < 2; ++k) {
-        const std::size_t after = grow(all[k], impact.t, 1, look, window_s, variance[k]);
-        const std::size_t before = grow(all[k], impact.t, -1, look, window_s, variance[k]);
-        const auto middle = static_cast<std::size_t>(
-            std::lower_bound(
-                all[k].begin(),
-                all[k].end(),
-                impact.t,
-                [](const PositionSample& s, double time) { return s.t < time; }
-            ) -
-            all[k].begin()
-        );
-        impact.moving[k] = {middle - before, middle + after};
-        if (before < kFewest || after < kFewest)
+        const Uniform later = grow(balls[k], impact.t, 1, look, window_s, variance[k]);
+        const Uniform earlier = grow(balls[k], impact.t, -1, look, window_s, variance[k]);
+        const std::size_t before = earlier.samples;
+        const std::size_t after = later.samples;
+        const auto index_of = [&](double t) {
+            const auto is_before = [](const PositionSample& s, double time) {
+                return s.t < time;
+            };
+            const auto found = std::lower_bound(all[k].begin(), all[k].end(), t, is_before);
+            return static_cast<std::size_t>(found - all[k].begin());
+        };
+        const double rounding = 1e-6;
+        impact.moving[k] = {
+            index_of(impact.t - earlier.reach_s - rounding),
+            index_of(impact.t + later.reach_s + rounding)};
+        if (before < kFewestKept || after < kFewestKept)
             return fail(
                 ErrorCode::bad_data,
                 "samples",
@@ -237,7 +247,7 @@ Result<Impact> find_impact(
                     before,
                     after
                 ),
-                "at least 3 are needed on each side, and a second's worth is better"
+                "at least 5 are needed on each side, and a second's worth is better"
             );
     }
     return impact;

@@ -23,7 +23,7 @@ struct Impact {
 /// Looks for the moment at which both paths bend at once and in opposite directions, then for how
 /// long before and after it both go on uniformly: hands and cushions are left out. Times of both
 /// balls count from one moment. `window_s` is the longest stretch that is used on each side.
-/// Errors (bad_data): no such moment, fewer than three samples of a ball on one side of it.
+/// Errors (bad_data): no such moment, fewer than five samples of a ball on one side of it.
 [[nodiscard]] Result<Impact> find_impact(
     std::span<const PositionSample> a, std::span<const PositionSample> b, double window_s
 );

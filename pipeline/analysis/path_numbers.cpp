@@ -189,7 +189,7 @@ Result<PathNumbers> path_numbers(const SmoothPath& path, double half_window_s) {
     numbers.length.u = u[kLength];
     numbers.displacement.u = u[kDisplacement];
     numbers.turn.u = u[kTurn];
-    if (!path.has_heading && numbers.standing_share > 0.98)
+    if (!path.has_heading && numbers.standing_share > 0.9)
         return fail(
             ErrorCode::bad_data,
             "samples",

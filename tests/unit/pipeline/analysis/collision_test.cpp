@@ -111,7 +111,11 @@ TEST(Collision, WithoutAMetreGivesWhatNeedsNone) {
             s.p_lab = {600.0 * s.p_lab.x(), 0.0, 0.0};
     for (auto& ball : balls)
         for (std::size_t i = 0; i < ball.samples.size(); ++i)
-            ball.samples[i].p_lab.y() += 0.3 * std::sin(12.9898 * static_cast<double>(i * i));
+            ball.samples[i].p_lab += 0.3 * Vector3d(
+                                               std::sin(78.233 * static_cast<double>(i * i)),
+                                               std::sin(12.9898 * static_cast<double>(i * i)),
+                                               0.0
+                                           );
     AnalysisConditions pixels;
     pixels.metric = false;
     const auto outcome =

@@ -40,7 +40,7 @@ TEST(Path, MeasuresACircle) {
     expect_near(*outcome, "greatest_speed", kRate * kRadius, 0.05);
     expect_near(*outcome, "mean_turning_rate", kRate, 0.02);
     expect_near(*outcome, "total_turn", 15.0 * kRate, 0.02);
-    expect_near(*outcome, "displacement", 2.0 * kRadius * std::sin(7.5 * kRate), 0.01);
+    expect_near(*outcome, "displacement", 2.0 * kRadius * std::abs(std::sin(7.5 * kRate)), 0.01);
     EXPECT_NEAR(named(*outcome, "duration").value, 15.0, 1e-6);
     EXPECT_EQ(outcome->plots.size(), 5U);
     EXPECT_TRUE(outcome->plots.front().equal_axes);

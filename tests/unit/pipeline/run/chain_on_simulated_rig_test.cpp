@@ -81,11 +81,11 @@ TEST(ChainOnSimulatedRig, VoxelsFindTheBobAndNothingElse) {
     std::uint32_t things = 0;
     const auto sink = [&](const RgbdFrame& frame, const simulate::Truth& truth) -> Result<void> {
         if (to_seconds(frame.t - run.rig.start) < 1.5) return chain.learn(frame);
-        swinging += truth.motion == simulate::Motion::swinging ? 1 : 0;
+        swinging += truth.motion == simulate::Motion::free ? 1 : 0;
         for (const auto& sample : chain.track(frame).value()) {
             things = std::max(things, sample.identity);
             const bool counts =
-                truth.motion == simulate::Motion::swinging && sample.status == TrackStatus::tracked;
+                truth.motion == simulate::Motion::free && sample.status == TrackStatus::tracked;
             seen += counts ? 1 : 0;
         }
         return {};

@@ -22,7 +22,7 @@ Definition pendulum() {
 TEST(Definition, FillsInTheDefaults) {
     const auto values = validate(pendulum(), {{"length_m", 0.8}});
     ASSERT_TRUE(values);
-    EXPECT_EQ(values->size(), 8u);
+    EXPECT_EQ(values->size(), pendulum().parameters.size());
     EXPECT_EQ(values->at("length_m"), 0.8);
     EXPECT_EQ(values->at("gravity"), 9.81);
     EXPECT_EQ(values->at("duration_s"), 30);
@@ -188,14 +188,14 @@ TEST(Definition, TextThatCouldCarryMoreThanTextIsRefusedWithItsPlace) {
 }
 
 TEST(Definition, TheSchemaRefusesWhatNoOtherCheckLooksAt) {
-    EXPECT_EQ(refusal([](auto& d) { d["id"] = "../etc/passwd"; }).field, "[\"id\"]");
+    EXPECT_EQ(refusal([](auto& d) { d["id"] = "../etc/passwd"; }).field, "[id]");
     EXPECT_FALSE(refusal([](auto& d) { d["title"] = std::string(500, 'x'); }).message.empty());
 }
 
 TEST(Definition, AParameterWithoutDefaultIsGivenOnlyIfSomebodyGivesIt) {
     auto document = pendulum_document();
     document["parameters"].push_back(
-        {{"name", "string_mass_kg"},
+        {{"name", "thread_mass_kg"},
          {"unit", "kg"},
          {"min", 0},
          {"max", 1},
@@ -205,8 +205,8 @@ TEST(Definition, AParameterWithoutDefaultIsGivenOnlyIfSomebodyGivesIt) {
     );
     const auto definition = read_with_schema(document);
     ASSERT_TRUE(definition) << to_text(definition.error());
-    EXPECT_FALSE(validate(*definition, {})->contains("string_mass_kg"));
-    EXPECT_EQ(validate(*definition, {{"string_mass_kg", 0.01}})->at("string_mass_kg"), 0.01);
+    EXPECT_FALSE(validate(*definition, {})->contains("thread_mass_kg"));
+    EXPECT_EQ(validate(*definition, {{"thread_mass_kg", 0.01}})->at("thread_mass_kg"), 0.01);
 }
 
 TEST(Definition, AllThatComeWithTheProgramAreRight) {

@@ -35,12 +35,9 @@ protected:
     }
 
     std::unique_ptr<RigService> make_service() {
-        const auto definitions =
-            experiments::load_definitions(std::string(KINECTLAB_SOURCE_DIR) + "/server/experiments")
-                .value();
         return std::make_unique<RigService>(
             std::vector<RigSettings>{{"rig-1", "Rig 1", "sim://rig-1?seed=1"}},
-            definitions,
+            library_,
             *store_,
             bus_
         );
@@ -60,6 +57,10 @@ protected:
     }
 
     test::TemporaryStore store_;
+    ExperimentLibrary library_{
+        experiments::load_definitions(std::string(KINECTLAB_SOURCE_DIR) + "/server/experiments")
+            .value(),
+        store_->definitions};
     lab::User ada_;
     lab::User bob_;
     bus::Bus bus_;

@@ -177,7 +177,7 @@ TEST_F(RigWorkerTest, TheBobIsHeldAtItsAngleWhenTheRunIsReady) {
     start();
     ASSERT_TRUE(step_until_state(RunState::ready));
     EXPECT_EQ(rig_.truth().motion, simulate::Motion::held);
-    EXPECT_NEAR(rig_.truth().angle_rad, 10.0 * M_PI / 180.0, 0.005);
+    EXPECT_NEAR(rig_.truth().value, 10.0 * M_PI / 180.0, 0.005);
     EXPECT_EQ(worker_.status().state, lab::RigState::busy);
     EXPECT_EQ(worker_.status().current_run, run_);
 }

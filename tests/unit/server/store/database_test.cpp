@@ -42,7 +42,7 @@ TEST_F(DatabaseTest, OpensWithTheSettingsThatKeepWhatWasAcknowledged) {
     EXPECT_EQ(connection.execAndGet("PRAGMA journal_mode").getString(), "wal");
     EXPECT_EQ(connection.execAndGet("PRAGMA foreign_keys").getInt(), 1);
     EXPECT_EQ(connection.execAndGet("PRAGMA synchronous").getInt(), 2);
-    EXPECT_EQ(database.version(), 2);
+    EXPECT_EQ(database.version(), 3);
     const auto mode = std::filesystem::status(file()).permissions();
     EXPECT_EQ(mode & std::filesystem::perms::others_all, std::filesystem::perms::none);
 }

@@ -36,7 +36,7 @@ TEST_F(RunsTest, KeepWhatTheyWereStartedWith) {
     EXPECT_EQ(found->user_name, "Display ada");
     EXPECT_EQ(found->booking, booking_.id);
     EXPECT_EQ(found->parameters, (lab::Parameters{{"length_m", 1.0}}));
-    EXPECT_EQ(found->definition_json, R"({"id": "pendulum"})");
+    EXPECT_EQ(found->definition_json, test::pendulum_json());
     EXPECT_EQ(found->created, kNoon);
     EXPECT_EQ(found->release_until, kNoon + 5 * kMinute);
     EXPECT_FALSE(found->started);
@@ -130,13 +130,13 @@ TEST_F(RunsTest, WhatACrashLeftOpenIsInterruptedAndKeepsItsPoses) {
 
 TEST_F(RunsTest, ShowTheNewestResult) {
     const auto run = store_.add_run(booking_);
-    EXPECT_EQ(store_->results.add({run.id, 0, kNoon, R"({"n":1})", "{}", {"short"}}), 1);
-    EXPECT_EQ(store_->results.add({run.id, 0, kNoon, R"({"n":2})", "{}", {}}), 2);
+    EXPECT_EQ(store_->results.add({run.id, 0, kNoon, R"({"n":1})", "{}", "[]", {"short"}}), 1);
+    EXPECT_EQ(store_->results.add({run.id, 0, kNoon, R"({"n":2})", "{}", "[]", {}}), 2);
     EXPECT_EQ(store_->runs.find(run.id)->result_json, R"({"n":2})");
     EXPECT_EQ(store_->results.latest(run.id)->version, 2);
     EXPECT_FALSE(store_->results.latest(run.id + 1));
     EXPECT_EQ(store_->runs.list({}).size(), 1U);  // versions do not multiply runs
-    EXPECT_ANY_THROW(store_->results.add({run.id, 0, kNoon, "no json", "{}", {}}));
+    EXPECT_ANY_THROW(store_->results.add({run.id, 0, kNoon, "no json", "{}", "[]", {}}));
 }
 
 MotionSample full_sample() {
