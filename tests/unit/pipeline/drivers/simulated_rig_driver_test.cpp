@@ -167,7 +167,7 @@ TEST_F(SimulatedRigDriver, BecomesAnotherApparatus) {
     ASSERT_EQ(parked.body_count, 2);
     EXPECT_STREQ(parked.bodies[0].name, "ball_a");
     EXPECT_STREQ(parked.bodies[1].name, "ball_b");
-    EXPECT_LT(parked.bodies[0].p_lab_m[0], -1.5);
+    EXPECT_LT(parked.bodies[0].p_lab_m[0], -1.0);
     ASSERT_EQ(command(device, Action::displace), openni::STATUS_OK);
     ASSERT_TRUE(eventually([&] { return state_of(device).motion == Motion::held; }));
     EXPECT_NEAR(state_of(device).bodies[1].p_lab_m[1], 0.02, 1e-9);
