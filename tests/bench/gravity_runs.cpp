@@ -83,8 +83,8 @@ Trajectory noisy_truth(std::uint64_t seed) {
 
 PendulumSettings exact_settings() {
     PendulumSettings settings;
-    settings.length_m = simulate::PendulumSettings{}.length_m;
-    settings.body = {simulate::PendulumSettings{}.bob_radius_m, 0.0, 0.0, 0.0};
+    settings.length_m = simulate::PendulumParameters{}.length_m;
+    settings.body = {simulate::PendulumParameters{}.bob_radius_m, 0.0, 0.0, 0.0};
     settings.length_u_m = 0.0;
     settings.depth_scale_u = 0.0;
     settings.clock_u = 0.0;
