@@ -224,7 +224,13 @@ Result<std::vector<Definition>> load_definitions(const std::filesystem::path& fo
             "install the program together with its share folder"
         );
     }
-    std::sort(files.begin(), files.end());
+    // The pendulum first: it is what a page shows to somebody who has not chosen.
+    std::sort(files.begin(), files.end(), [](const auto& a, const auto& b) {
+        const auto place = [](const auto& file) {
+            return std::pair(file.stem() != "pendulum", file);
+        };
+        return place(a) < place(b);
+    });
     std::vector<Definition> definitions;
     for (const auto& file : files) {
         auto definition = load_file(file);

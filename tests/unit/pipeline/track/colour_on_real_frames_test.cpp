@@ -65,7 +65,8 @@ void expect_at_rest(const PictureBox& place, double learn_at_s, std::size_t fram
     const Rest rest = rest_of(samples);
     EXPECT_LT(rest.scatter_m, 0.003);
     EXPECT_LT(rest.scatter_m, 2.0 * rest.sigma_m);
-    EXPECT_GT(rest.scatter_m, 0.5 * rest.sigma_m);
+    // Most of what the place may be off by is the same in every frame of a thing at rest.
+    EXPECT_GT(rest.scatter_m, 0.2 * rest.sigma_m);
 }
 
 TEST(ColourOnRealFrames, ABrownBoxAtRestFromABox) {
