@@ -38,7 +38,7 @@ test('a student runs the pendulum, watches it live and gets g', { timeout: 180_0
   assert.equal(poses.t_s.length, lines.length - 1);
   assert.equal(poses.x.length, poses.t_s.length);
   const fit = (await student.get(`/runs/${id}/fit`)).body;
-  assert.equal(fit.t_s.length, fit.residual.x.length);
+  assert.equal(fit.objects[0].t_s.length, fit.objects[0].residual.x.length);
 
   await t.test('the viewer saw all of it', () => {
     assert.equal(viewer.messages[0].type, 'hello');
