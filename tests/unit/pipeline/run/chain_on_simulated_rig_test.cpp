@@ -82,7 +82,7 @@ TEST(ChainOnSimulatedRig, VoxelsFindTheBobAndNothingElse) {
     const auto sink = [&](const RgbdFrame& frame, const simulate::Truth& truth) -> Result<void> {
         if (to_seconds(frame.t - run.rig.start) < 1.5) return chain.learn(frame);
         swinging += truth.motion == simulate::Motion::free ? 1 : 0;
-        const std::vector<TrackSample> samples = chain.track(frame).value();
+        const auto samples = chain.track(frame).value();
         for (const auto& sample : samples) {
             things = std::max(things, sample.identity);
             const bool counts =
