@@ -65,6 +65,7 @@ public:
     void copy_colour(std::vector<std::uint8_t>& rgb) const;
 
     [[nodiscard]] bool set_property(int id, std::span<const std::byte> data);
+    /// False also where the property has another size than `data`.
     [[nodiscard]] bool get_property(int id, std::span<std::byte> data);
 
 private:

@@ -18,7 +18,8 @@ constexpr int kSmallClick_px = 8;          // a box up to this size is meant as 
 constexpr double kLargest = 0.25;          // of the picture: not a thing but the room
 constexpr int kEdge_px = 3;                // around a thing, where colours are mixed
 constexpr int kNarrowest_px = 8;           // of the surroundings
-constexpr double kChroma = 0.14, kBrightness = 0.35;  // how far a grown colour may lie off
+constexpr float kChroma = 0.14F, kBrightness = 0.35F;  // how far a grown colour may lie off
+constexpr float kNoise = 0.02F;  // of the picture's values: in the dark it alone makes a chroma
 
 Error wrong(const std::string& field, std::string what, std::string cure) {
     return {ErrorCode::invalid_argument, field, std::move(what), std::move(cure)};
@@ -32,7 +33,8 @@ Eigen::Vector2f chroma(const Hsv& hsv) {
 
 bool alike(const Hsv& a, const Hsv& b) {
     const float brighter = std::max(a.value, b.value), darker = std::min(a.value, b.value);
-    return (chroma(a) - chroma(b)).norm() <= kChroma &&
+    const float chroma_noise = kNoise / std::max(darker, kNoise);
+    return (chroma(a) - chroma(b)).norm() <= kChroma + chroma_noise &&
            brighter - darker <= kBrightness * brighter + 0.03F;
 }
 

@@ -117,11 +117,12 @@ TEST(OpenniSource, PropertiesPassThroughFromAnotherThread) {
     bool fine = false;
     std::thread other([&] {
         fine = make(*source, "pendulum length_m=0.7");
-        std::string now(simulated_rig::kLongestApparatus, '?');
+        const std::string_view wanted = "pendulum length_m=0.7";
+        std::string now(wanted.size() + 1, '?');  // its closing zero too
         fine =
             fine &&
             source->get_property(simulated_rig::kApparatus, std::as_writable_bytes(std::span(now)));
-        fine = fine && std::string(now.c_str()) == "pendulum length_m=0.7";
+        fine = fine && now.c_str() == wanted;
     });
     RgbdFrame frame;
     EXPECT_TRUE(wait_for(*source, frame, FrameStatus::frame));

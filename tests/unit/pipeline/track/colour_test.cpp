@@ -194,6 +194,7 @@ TEST(Colour, AGreyThingCanBeLearnedWhereItsSurroundingsAreNot) {
     black.colour = {30.0, 30.0, 30.0};
     auto tracker = tracker_for(scene.camera, click_on(scene, black));
     const TrackSample sample = sample_of(*tracker, scene.frame({black}));
+    if (const auto fault = tracker->take_fault()) FAIL() << to_text(*fault);
     ASSERT_EQ(sample.status, TrackStatus::tracked) << sample.quality.why_lost;
     EXPECT_NEAR(sample.p_cam.z(), 1.08, 0.01);
 }
