@@ -12,6 +12,12 @@ using Rows = Eigen::Array<double, 11, 1>;
 
 constexpr double kPhaseStep = 0.12;  // rad: frequency right to 0.12⁶/5040 = 6e-10
 
+/// s. A wide swing is faster at its bottom than a sine of its period.
+double longest_step(const SwingParameters& p) {
+    const double fastest_sq = p.v.squaredNorm() + 2.0 * p.omega0_sq * (1.0 + p.n.z());
+    return kPhaseStep / std::sqrt(p.omega0_sq + fastest_sq);
+}
+
 // Rows of the state below the motion itself.
 enum Row {
     kRowDirection = 1,
@@ -130,7 +136,7 @@ SwingParameters moved(const SwingParameters& parameters, const SwingVector& step
 }
 
 SwingPath::SwingPath(const SwingParameters& start)
-    : start_(start), longest_step_(kPhaseStep / std::sqrt(start.omega0_sq)), state_(State::Zero()) {
+    : start_(start), longest_step_(longest_step(start)), state_(State::Zero()) {
     const auto axes = tangent_axes(start.n);
     state_.row(0) << start.n.transpose(), start.v.transpose();
     for (int i = 0; i < 2; ++i) {
