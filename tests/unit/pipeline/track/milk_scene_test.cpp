@@ -80,13 +80,13 @@ TEST_F(MilkScene, TheCartonIsNotFoundAmongOtherBoxesAndTins) {
     }
 }
 
-/// Its parameter is the first of five seeds: twenty in one test would take one core for minutes.
+/// Its parameter is the first of two seeds: all in one test would take one core for minutes.
 class MilkSceneSeeds : public MilkScene, public testing::WithParamInterface<std::uint32_t> {};
 
-INSTANTIATE_TEST_SUITE_P(Twenty, MilkSceneSeeds, testing::Values(1U, 6U, 11U, 16U));
+INSTANTIATE_TEST_SUITE_P(Eight, MilkSceneSeeds, testing::Values(1U, 3U, 5U, 7U));
 
 TEST_P(MilkSceneSeeds, TheCartonIsFoundWhereItIsWithEverySeed) {
-    for (std::uint32_t seed = GetParam(); seed < GetParam() + 5; ++seed) {
+    for (std::uint32_t seed = GetParam(); seed < GetParam() + 2; ++seed) {
         PatchRecogniser recogniser(camera_, model_, seed);
         const auto found = recogniser.find(frame_.depth);
         ASSERT_TRUE(found.has_value()) << "seed " << seed;
