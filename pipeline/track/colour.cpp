@@ -14,6 +14,7 @@
 #include "pipeline/track/first_look.hpp"
 #include "pipeline/track/patch_place.hpp"
 #include "pipeline/track/picture_box.hpp"
+#include "pipeline/track/steep_sides.hpp"
 #include "pipeline/track/surface_pieces.hpp"
 #include "pipeline/track/surface_vote.hpp"
 
@@ -37,6 +38,7 @@ public:
         : camera_(camera),
           cameras_(camera),
           pieces_(camera),
+          sides_(camera),
           vote_(camera),
           first_look_(camera),
           colour_index_(static_cast<std::size_t>(camera.depth.width * camera.depth.height)),
@@ -200,6 +202,10 @@ private:
         return at >= 0 && target.table->passes(entry_, frame.rgb.data() + 3 * at);
     }
 
+    static std::uint8_t least_vote(const Target& target) {
+        return static_cast<std::uint8_t>(std::max(1.0, 0.5 * target.half_vote) + 1.0);
+    }
+
     /// Patches of its colours within an area of the picture.
     std::span<const MovedPixels> vote_for(
         const Target& target, const RgbdFrame& frame, const PixelArea& area
@@ -217,11 +223,11 @@ private:
             }
         vote_.count(mask_, area, votes_);
         std::fill(patch_.begin(), patch_.end(), std::uint8_t{0});
-        const auto least = static_cast<std::uint8_t>(std::max(1.0, 0.5 * target.half_vote));
+        const std::uint8_t least = least_vote(target);
         for (int v = area.top; v < area.bottom; ++v)
             for (int u = area.left; u < area.right; ++u) {
                 const auto i = static_cast<std::size_t>(v * camera_.depth.width + u);
-                patch_[i] = votes_[i] > least ? 1 : 0;
+                patch_[i] = votes_[i] >= least ? 1 : 0;
             }
         return pieces_.cut(frame.depth, patch_, kFewestPixels);
     }
@@ -305,7 +311,10 @@ private:
         return best;
     }
 
-    void report(Target& target, const RgbdFrame& frame, MovedPixels piece, TrackSample& sample) {
+    void report(Target& target, const RgbdFrame& frame, MovedPixels front, TrackSample& sample) {
+        const double front_m2 = target.patch.glance(frame, front).area_m2;
+        const MovedPixels piece =
+            sides_.join(front, frame.depth, votes_, least_vote(target), front_m2);
         const auto place = target.patch.measure(frame, piece, votes_, target.half_vote);
         target.seen_at = frame.t;
         target.area_m2 = target.patch.glance(frame, piece).area_m2;
@@ -332,6 +341,7 @@ private:
     RgbdCamera camera_;
     TwoCameras cameras_;
     SurfacePieces pieces_;
+    SteepSides sides_;
     SurfaceVote vote_;
     FirstLook first_look_;
     ColourConstancy constancy_;

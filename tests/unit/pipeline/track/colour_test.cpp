@@ -150,6 +150,20 @@ Eigen::Vector3d true_place(const PrintedBox& box) {
     return sum / points;
 }
 
+TEST(Colour, CountsTheSteepSideThatABoxShows) {
+    TexturedScene scene(5);
+    PrintedBox box = plain_box(-0.1, 0.0);
+    box.half_m = {0.06, 0.10, 0.03};
+    box.T_cam_box.linear() =
+        Eigen::AngleAxisd(0.1, Eigen::Vector3d(0.2, 0.3, 1.0).normalized()).toRotationMatrix();
+    auto tracker = tracker_for(scene.camera, click_on(scene, box));
+    Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+    constexpr int kFrames = 6;
+    for (int i = 0; i < kFrames; ++i)
+        sum += sample_of(*tracker, scene.frame({box})).p_cam - true_place(box);
+    EXPECT_LT((sum / kFrames).norm(), 0.0005) << (sum / kFrames).transpose();
+}
+
 /// Mean over frames and seeds of eᵀ Σ⁻¹ e, which is 3 where Σ is what the error e scatters with.
 double normalised_error(std::uint32_t print, double motion_m) {
     double sum = 0.0;
