@@ -6,17 +6,12 @@
 #include <optional>
 #include <utility>
 
-#include "pipeline/core/number_text.hpp"
-#include "pipeline/features/colour_constancy.hpp"
-#include "pipeline/features/two_cameras.hpp"
 #include "pipeline/track/colour_bounds.hpp"
 #include "pipeline/track/colour_model.hpp"
+#include "pipeline/track/colour_sight.hpp"
 #include "pipeline/track/first_look.hpp"
 #include "pipeline/track/patch_place.hpp"
 #include "pipeline/track/picture_box.hpp"
-#include "pipeline/track/steep_sides.hpp"
-#include "pipeline/track/surface_pieces.hpp"
-#include "pipeline/track/surface_vote.hpp"
 
 namespace kinectlab {
 namespace {
@@ -36,15 +31,9 @@ class ColourTracker : public Tracker {
 public:
     ColourTracker(const RgbdCamera& camera, TrackedObjects<ColourSettings> objects)
         : camera_(camera),
-          cameras_(camera),
-          pieces_(camera),
-          sides_(camera),
-          vote_(camera),
+          sight_(camera),
           first_look_(camera),
-          colour_index_(static_cast<std::size_t>(camera.depth.width * camera.depth.height)),
-          mask_(colour_index_.size()),
-          votes_(colour_index_.size()),
-          patch_(colour_index_.size()) {
+          place_(static_cast<std::size_t>(camera.depth.width * camera.depth.height)) {
         for (auto& object : objects) {
             Target target(camera);
             target.object = std::move(object);
@@ -61,7 +50,10 @@ public:
         const bool has_colour =
             frame.rgb.size() ==
             3 * static_cast<std::size_t>(camera_.colour.width * camera_.colour.height);
-        if (has_colour) look(frame);
+        if (has_colour) {
+            if (!first_t_) first_t_ = frame.t;
+            sight_.look(frame);
+        }
         for (auto& target : targets_) {
             TrackSample sample;
             sample.t = frame.t;
@@ -76,7 +68,7 @@ public:
     std::optional<Error> take_fault() override { return std::exchange(fault_, std::nullopt); }
 
     void reset() override {
-        constancy_.reset();
+        sight_.reset();
         first_t_.reset();
         fault_.reset();
         for (auto& target : targets_) {
@@ -106,20 +98,6 @@ private:
         PatchPlace patch;
     };
 
-    /// What all objects need of a frame: its gains, and the colour pixel of every depth pixel.
-    void look(const RgbdFrame& frame) {
-        if (!first_t_) first_t_ = frame.t;
-        if (!constancy_.has_reference()) constancy_.learn(frame.rgb, camera_.colour.width);
-        gains_ = constancy_.gains(frame.rgb);
-        entry_ = ColourTable::entry(gains_);
-        vote_.look(frame.depth);
-        const int width = camera_.depth.width;
-        for (int v = 0; v < camera_.depth.height; ++v) {
-            const auto row = static_cast<std::size_t>(v * width);
-            cameras_.colour_indices(&frame.depth[row], 0, v, width, &colour_index_[row]);
-        }
-    }
-
     /// Why it is lost; empty if it is tracked.
     std::string_view find(
         Target& target,
@@ -141,7 +119,7 @@ private:
         }
         const bool remembered = target.seen_at && frame.t - *target.seen_at <= kMemory;
         const auto pieces =
-            vote_for(target, frame, remembered ? reach(target, frame.t) : whole_picture());
+            patches(target, remembered ? reach(target, frame.t) : sight_.whole_picture());
         if (pieces.empty()) return "its colour is not seen where it could be";
         const MovedPixels best = likely_piece(target, frame, pieces, remembered);
         if (best.empty())
@@ -154,7 +132,9 @@ private:
         const PictureBox& place = *target.object.settings.box;
         const std::string field = "objects[" + std::to_string(target.object.index) + "]." +
                                   (is_click(place) ? "click" : "box");
-        if (auto ok = first_look_.take(frame, colour_index_, gains_, moved, place, field); !ok)
+        if (auto ok =
+                first_look_.take(frame, sight_.colour_index(), sight_.gains(), moved, place, field);
+            !ok)
             return ok;
         auto model = learn_colours(first_look_.inside(), first_look_.outside());
         if (!model || model->share_outside > kMostAround * model->share_inside)
@@ -169,15 +149,13 @@ private:
         target.half_vote = 255.0 * 0.5 * (model->share_inside + model->share_outside);
 
         // Of what has its colours now, the piece that the place shows most of.
-        auto at_place = patch_of(first_look_.pixels());
-        MovedPixels best = most_of(vote_for(target, frame, whole_picture()), at_place);
+        const MovedPixels at_place = first_look_.pixels();
+        MovedPixels best = most_of(patches(target, sight_.whole_picture()), at_place);
         if (!best.empty()) {
-            std::size_t passing = 0;
-            for (const auto pixel : best)
-                passing += passes(target, frame, pixel) ? 1 : 0;
+            const std::size_t passing = sight_.passing(*target.table, best);
             const double share = static_cast<double>(passing) / static_cast<double>(best.size());
             target.half_vote = 255.0 * 0.5 * (share + model->share_outside);
-            best = most_of(vote_for(target, frame, whole_picture()), at_place);
+            best = most_of(patches(target, sight_.whole_picture()), at_place);
         }
         const auto seen = static_cast<double>(best.size());
         if (seen < kFewestInBox * static_cast<double>(first_look_.pixels().size()))
@@ -193,81 +171,31 @@ private:
         target.area_m2 = glance.area_m2;
         target.place_cam = glance.centroid_cam;
         target.seen_at = frame.t;
-        target.area = around(best);
+        target.area = sight_.around(best);
         return {};
     }
 
-    bool passes(const Target& target, const RgbdFrame& frame, std::size_t pixel) const {
-        const std::int32_t at = colour_index_[pixel];
-        return at >= 0 && target.table->passes(entry_, frame.rgb.data() + 3 * at);
+    std::span<const MovedPixels> patches(const Target& target, const PixelArea& area) {
+        return sight_.patches(*target.table, target.half_vote, area, kFewestPixels);
     }
 
-    static std::uint8_t least_vote(const Target& target) {
-        return static_cast<std::uint8_t>(std::max(1.0, 0.5 * target.half_vote) + 1.0);
-    }
-
-    /// Patches of its colours within an area of the picture.
-    std::span<const MovedPixels> vote_for(
-        const Target& target, const RgbdFrame& frame, const PixelArea& area
-    ) {
-        const int margin = vote_.half_window();
-        const PixelArea wider{
-            std::max(0, area.left - margin),
-            std::max(0, area.top - margin),
-            std::min(camera_.depth.width, area.right + margin),
-            std::min(camera_.depth.height, area.bottom + margin)};
-        for (int v = wider.top; v < wider.bottom; ++v)
-            for (int u = wider.left; u < wider.right; ++u) {
-                const auto i = static_cast<std::size_t>(v * camera_.depth.width + u);
-                mask_[i] = passes(target, frame, i) ? 1 : 0;
-            }
-        vote_.count(mask_, area, votes_);
-        std::fill(patch_.begin(), patch_.end(), std::uint8_t{0});
-        const std::uint8_t least = least_vote(target);
-        for (int v = area.top; v < area.bottom; ++v)
-            for (int u = area.left; u < area.right; ++u) {
-                const auto i = static_cast<std::size_t>(v * camera_.depth.width + u);
-                patch_[i] = votes_[i] >= least ? 1 : 0;
-            }
-        return pieces_.cut(frame.depth, patch_, kFewestPixels);
-    }
-
-    std::vector<std::uint8_t> patch_of(std::span<const std::uint32_t> pixels) const {
-        std::vector<std::uint8_t> patch(mask_.size());
-        for (const auto pixel : pixels)
-            patch[pixel] = 1;
-        return patch;
-    }
-
-    static MovedPixels most_of(
-        std::span<const MovedPixels> pieces, std::span<const std::uint8_t> place
-    ) {
+    /// The patch that shares the most pixels with a place.
+    [[nodiscard]] MovedPixels most_of(std::span<const MovedPixels> all, MovedPixels place) {
+        for (const auto pixel : place)
+            place_[pixel] = 1;
         MovedPixels best;
         std::ptrdiff_t most = 0;
-        for (const auto& piece : pieces) {
-            const auto inside = std::count_if(piece.begin(), piece.end(), [&](std::uint32_t pixel) {
-                return place[pixel] != 0;
+        for (const auto& patch : all) {
+            const auto shared = std::count_if(patch.begin(), patch.end(), [&](std::uint32_t pixel) {
+                return place_[pixel] != 0;
             });
-            if (inside <= most) continue;
-            most = inside;
-            best = piece;
+            if (shared <= most) continue;
+            most = shared;
+            best = patch;
         }
+        for (const auto pixel : place)
+            place_[pixel] = 0;
         return best;
-    }
-
-    [[nodiscard]] PixelArea whole_picture() const {
-        return {0, 0, camera_.depth.width, camera_.depth.height};
-    }
-
-    [[nodiscard]] PixelArea around(MovedPixels pixels) const {
-        PixelArea area{camera_.depth.width, camera_.depth.height, 0, 0};
-        for (const auto pixel : pixels) {
-            const int u = static_cast<int>(pixel) % camera_.depth.width;
-            const int v = static_cast<int>(pixel) / camera_.depth.width;
-            area.left = std::min(area.left, u), area.right = std::max(area.right, u + 1);
-            area.top = std::min(area.top, v), area.bottom = std::max(area.bottom, v + 1);
-        }
-        return area;
     }
 
     static double farthest_m(const Target& target, TimeNs t) {
@@ -313,12 +241,11 @@ private:
 
     void report(Target& target, const RgbdFrame& frame, MovedPixels front, TrackSample& sample) {
         const double front_m2 = target.patch.glance(frame, front).area_m2;
-        const MovedPixels piece =
-            sides_.join(front, frame.depth, votes_, least_vote(target), front_m2);
-        const auto place = target.patch.measure(frame, piece, votes_, target.half_vote);
+        const MovedPixels piece = sight_.with_sides(front, target.half_vote, front_m2);
+        const auto place = target.patch.measure(frame, piece, sight_.votes(), target.half_vote);
         target.seen_at = frame.t;
         target.area_m2 = target.patch.glance(frame, piece).area_m2;
-        target.area = around(piece);
+        target.area = sight_.around(piece);
         target.place_cam = place.centroid_cam;
         sample.status = TrackStatus::tracked;
         sample.p_cam = place.centroid_cam;
@@ -339,58 +266,15 @@ private:
     }
 
     RgbdCamera camera_;
-    TwoCameras cameras_;
-    SurfacePieces pieces_;
-    SteepSides sides_;
-    SurfaceVote vote_;
+    ColourSight sight_;
     FirstLook first_look_;
-    ColourConstancy constancy_;
-    ColourConstancy::Gains gains_{1.0F, 1.0F, 1.0F};
-    ColourTable::Entry entry_{};
     std::optional<TimeNs> first_t_;
     std::optional<Error> fault_;
-    std::vector<std::int32_t> colour_index_;
-    std::vector<std::uint8_t> mask_, votes_, patch_;  // a byte a pixel
+    std::vector<std::uint8_t> place_;  // a byte a depth pixel, all 0 between calls
     std::vector<Target> targets_;
 };
 
-Result<void> check_range(
-    double low, double high, double most, const std::string& field, bool may_wrap
-) {
-    const bool fits = low >= 0.0 && high >= 0.0 && low <= most && high <= most;  // not of NaN
-    if (fits && (low < high || (may_wrap && low != high))) return {};
-    return fail(
-        ErrorCode::invalid_argument,
-        field,
-        "is [" + number_text(low) + ", " + number_text(high) + "]",
-        std::string("give [lowest, highest] from 0 to ") + (most > 1.0 ? "360" : "1") +
-            (may_wrap ? "; lowest > highest goes through red" : "")
-    );
-}
-
 }  // namespace
-
-Result<void> check(
-    const ColourSettings& settings, const RgbdCamera& camera, const std::string& path
-) {
-    if (settings.bounds.has_value() == settings.box.has_value())
-        return fail(
-            ErrorCode::invalid_argument,
-            path,
-            settings.box ? "has both a place to learn the colour from and bounds"
-                         : "has neither bounds nor a place to learn the colour from",
-            "give hue_deg, or click or box"
-        );
-    if (auto ok = check_learn_at(settings.learn_at_s, path + ".learn_at_s"); !ok) return ok;
-    if (settings.box) return check_box(*settings.box, camera.colour, path + ".box");
-    const ColourBounds& b = *settings.bounds;
-    if (auto ok = check_range(b.hue_min_deg, b.hue_max_deg, 360.0, path + ".hue_deg", true); !ok)
-        return ok;
-    if (auto ok = check_range(b.saturation_min, b.saturation_max, 1.0, path + ".saturation", false);
-        !ok)
-        return ok;
-    return check_range(b.value_min, b.value_max, 1.0, path + ".value", false);
-}
 
 std::unique_ptr<Tracker> make_colour_tracker(
     const RgbdCamera& camera, TrackedObjects<ColourSettings> objects
