@@ -4,11 +4,10 @@
 #include "pipeline/analysis/pendulum.hpp"
 #include "pipeline/core/file_ending.hpp"
 #include "pipeline/sensor/file_bytes.hpp"
+#include "server/commands/analysis_files.hpp"
 #include "server/commands/arguments.hpp"
 #include "server/commands/commands.hpp"
-#include "server/commands/fit_csv.hpp"
 #include "server/commands/output.hpp"
-#include "server/commands/pose_table.hpp"
 #include "server/commands/tracked_recording.hpp"
 #include "server/config/version.hpp"
 #include "server/experiments/definition.hpp"
@@ -16,8 +15,6 @@
 #include "server/experiments/recorded_settings.hpp"
 #include "server/experiments/share_dir.hpp"
 #include "server/experiments/trajectory_table.hpp"
-#include "server/plots/draw.hpp"
-#include "server/plots/report.hpp"
 
 namespace kinectlab::commands {
 namespace {
@@ -163,69 +160,6 @@ Result<Material> from_table(
     return material;
 }
 
-/// Every plot and the budget as NAME.svg and NAME.png, and all of it as one page to print.
-Result<void> write_pictures(
-    const std::filesystem::path& folder,
-    const experiments::Definition& definition,
-    const experiments::Evaluation& evaluation
-) {
-    const auto write = [&](const std::string& name, auto&& draw) {
-        return write_text_file(folder / (name + ".svg"), draw(plots::Format::svg)).and_then([&] {
-            return write_text_file(folder / (name + ".png"), draw(plots::Format::png));
-        });
-    };
-    auto written = write("budget", [&](plots::Format format) {
-        return plots::draw_budget(evaluation.outcome.measurements, format);
-    });
-    for (const auto& plot : evaluation.outcome.plots)
-        written = written.and_then([&] {
-            return write(plot.name, [&](plots::Format format) {
-                return plots::draw(plot, format);
-            });
-        });
-    return written.and_then([&] {
-        const auto source = evaluation.result["provenance"].value("source", "");
-        return write_text_file(
-            folder / "report.html",
-            plots::report_html(
-                {definition.title,
-                 "Measured from " + source,
-                 experiments::to_json(definition),
-                 evaluation.result,
-                 evaluation.plots}
-            )
-        );
-    });
-}
-
-Result<void> write_files(
-    const std::filesystem::path& folder,
-    const experiments::Definition& definition,
-    const experiments::Evaluation& evaluation,
-    const std::vector<Trajectory>& trajectories
-) {
-    std::error_code code;
-    std::filesystem::create_directories(folder, code);
-    if (code)
-        return fail(
-            ErrorCode::unavailable,
-            folder.string(),
-            "cannot be made: " + code.message(),
-            "name a folder that you may write to"
-        );
-    return write_text_file(folder / "poses.csv", poses_to_csv(trajectories))
-        .and_then([&] {
-            return write_text_file(folder / "fit.csv", fit_to_csv(evaluation.outcome.fits));
-        })
-        .and_then([&] {
-            return write_text_file(folder / "plots.json", evaluation.plots.dump() + "\n");
-        })
-        .and_then([&] { return write_pictures(folder, definition, evaluation); })
-        .and_then([&] {
-            return write_text_file(folder / "result.json", evaluation.result.dump(1) + "\n");
-        });
-}
-
 }  // namespace
 
 int analyse(int argc, char** argv) {
@@ -282,7 +216,8 @@ int analyse(int argc, char** argv) {
         return kFailed;
     }
     if (!arguments.out.empty()) {
-        auto written = write_files(arguments.out, *definition, *evaluation, material->trajectories);
+        auto written =
+            write_analysis(arguments.out, *definition, *evaluation, material->trajectories);
         if (!written) return report(written.error());
     }
     print_json(evaluation->result);
