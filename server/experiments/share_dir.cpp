@@ -3,8 +3,11 @@
 namespace kinectlab::experiments {
 
 std::filesystem::path share_dir() {
-    const auto program = std::filesystem::canonical("/proc/self/exe");
-    return program.parent_path().parent_path() / "share" / "kinectlab";
+    // Found once: an upgrade replaces the program's file while the old one still serves.
+    static const std::filesystem::path found =
+        std::filesystem::canonical("/proc/self/exe").parent_path().parent_path() / "share" /
+        "kinectlab";
+    return found;
 }
 
 }  // namespace kinectlab::experiments
