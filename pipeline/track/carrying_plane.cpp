@@ -42,7 +42,7 @@ public:
             TrackSample sample;
             sample.t = frame.t;
             sample.object = plane.index;
-            if (const auto fit = find(plane, ball, frame))
+            if (const auto fit = find(plane, ball))
                 take(*fit, sample);
             else
                 sample.quality.why_lost = plane.region.is_grown() ? kHidden : kNeverTouched;
@@ -73,15 +73,13 @@ private:
         return std::nullopt;
     }
 
-    std::optional<ShapeFit> find(
-        Plane& plane, const std::optional<SeenBall>& ball, const RgbdFrame& frame
-    ) {
-        auto fit = plane.region.follow(frame, image_);
+    std::optional<ShapeFit> find(Plane& plane, const std::optional<SeenBall>& ball) {
+        const auto fit = plane.region.follow(image_);
         if (!ball || !std::isfinite(ball->radius_m) || (fit && touches(*ball, fit->shape)))
             return fit;
         const auto rough = touched_.find(image_, *ball);
         if (!rough) return fit;
-        const auto grown = other_.grow(frame, image_, *rough, touched_.pixels());
+        const auto grown = other_.grow(image_, *rough, touched_.pixels());
         if (!grown || !touches(*ball, grown->shape)) return fit;
         std::swap(plane.region, other_);
         return grown;

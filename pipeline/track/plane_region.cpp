@@ -7,18 +7,18 @@
 namespace kinectlab {
 namespace {
 
-constexpr double kNearSigmas = 6.0;         // as far out as the fit looks
-constexpr std::size_t kFewestPixels = 200;  // of a whole plane
-constexpr std::size_t kFewestOfPiece = 12;  // smaller ones are noise
+constexpr double kNearSigmas = 4.0;  // wider would take in more of a face that begins at its edge
+constexpr std::size_t kFewestPixels = 200;
 constexpr int kMostRounds = 12;
 constexpr double kGrown = 1.02;  // times as many pixels: else it has reached its edges
 constexpr double kMaxRmsSigmas = 3.0;
-constexpr double kMinInlierShare = 0.6;
+constexpr double kMinInlierShare = 0.9;  // less where a fit slid from one face to the next
+constexpr double kMostTurnU = 0.02;      // rad; planes through a strip of pixels may be turned more
 
 }  // namespace
 
 PlaneRegion::PlaneRegion(const RgbdCamera& camera)
-    : camera_(camera), scale_(camera), fitter_(camera), pieces_(camera) {
+    : camera_(camera), scale_(camera), fitter_(camera) {
     const auto pixels = static_cast<std::size_t>(camera.depth.width * camera.depth.height);
     region_.resize(pixels);
     near_.resize(pixels);
@@ -45,17 +45,26 @@ void PlaneRegion::find_near(const DisparityImage& image, const Shape& plane) {
     }
 }
 
-/// Of the continuous pieces in near_ those that go on from what is known to be of the plane: the
-/// ball may lie across it, and part it in two.
-void PlaneRegion::keep_connected(const RgbdFrame& frame, const std::vector<std::uint8_t>& known) {
+/// All in near_ that goes on from what is known to be of the plane: the ball may lie across it and
+/// part it in two. Lying in one plane they need no other proof of going on, and a plane seen so
+/// steeply that it leaps from row to row would not pass it.
+void PlaneRegion::keep_connected(const std::vector<std::uint8_t>& known) {
     kept_.clear();
-    const auto in_all = static_cast<std::size_t>(std::count(known.begin(), known.end(), 1));
-    for (const auto& piece : pieces_.cut(frame.depth, near_, kFewestOfPiece)) {
-        const auto in_known = static_cast<std::size_t>(std::count_if(
-            piece.begin(), piece.end(), [&](std::uint32_t i) { return known[i] != 0; }
-        ));
-        if (20 * in_known < in_all && 2 * in_known < piece.size()) continue;
-        kept_.insert(kept_.end(), piece.begin(), piece.end());
+    const auto size = static_cast<std::uint32_t>(near_.size());
+    const auto width = static_cast<std::uint32_t>(camera_.depth.width);
+    const auto visit = [&](std::uint32_t pixel) {
+        if (near_[pixel] == 0) return;
+        near_[pixel] = 0;
+        kept_.push_back(pixel);
+    };
+    for (std::uint32_t start = 0; start < size; ++start)
+        if (known[start] != 0) visit(start);
+    for (std::size_t next = 0; next < kept_.size(); ++next) {
+        const std::uint32_t at = kept_[next], column = at % width;
+        if (column > 0) visit(at - 1);
+        if (column + 1 < width) visit(at + 1);
+        if (at >= width) visit(at - width);
+        if (at + width < size) visit(at + width);
     }
     std::sort(kept_.begin(), kept_.end());
 }
@@ -64,17 +73,15 @@ std::optional<ShapeFit> PlaneRegion::fit(const DisparityImage& image, const Shap
     auto found = fitter_.fit(image, kept_, guess, false);
     if (!found) return found;
     const double s = scale_.steps_at(std::max(0.1, found->shape.point.z()));
+    const double turn = found->covariance.bottomRightCorner<3, 3>().trace() - kAnyAngle;
     if (found->quality.rms_steps > kMaxRmsSigmas * scale_.sigma_at(s) ||
-        found->quality.inlier_share < kMinInlierShare)
+        found->quality.inlier_share < kMinInlierShare || !(turn < kMostTurnU * kMostTurnU))
         found.reset();
     return found;
 }
 
 std::optional<ShapeFit> PlaneRegion::grow(
-    const RgbdFrame& frame,
-    const DisparityImage& image,
-    const Shape& rough,
-    std::span<const std::uint32_t> pixels
+    const DisparityImage& image, const Shape& rough, std::span<const std::uint32_t> pixels
 ) {
     std::fill(growing_.begin(), growing_.end(), std::uint8_t{0});
     kept_.assign(pixels.begin(), pixels.end());
@@ -84,7 +91,7 @@ std::optional<ShapeFit> PlaneRegion::grow(
         for (const std::uint32_t pixel : kept_)
             growing_[pixel] = 1;
         find_near(image, found->shape);
-        keep_connected(frame, growing_);
+        keep_connected(growing_);
         found = fit(image, found->shape);
         const auto before = static_cast<double>(std::exchange(size, kept_.size()));
         std::fill(growing_.begin(), growing_.end(), std::uint8_t{0});
@@ -98,10 +105,10 @@ std::optional<ShapeFit> PlaneRegion::grow(
     return found;
 }
 
-std::optional<ShapeFit> PlaneRegion::follow(const RgbdFrame& frame, const DisparityImage& image) {
+std::optional<ShapeFit> PlaneRegion::follow(const DisparityImage& image) {
     if (!plane_) return std::nullopt;
     find_near(image, *plane_);
-    keep_connected(frame, region_);
+    keep_connected(region_);
     if (kept_.size() < kFewestPixels) return std::nullopt;
     const auto found = fit(image, *plane_);
     if (!found) return std::nullopt;

@@ -5,10 +5,10 @@
 #include <span>
 #include <vector>
 
-#include "pipeline/core/frame.hpp"
+#include "pipeline/core/camera.hpp"
+#include "pipeline/core/disparity.hpp"
 #include "pipeline/features/surface_points.hpp"
 #include "pipeline/track/shape_fit.hpp"
-#include "pipeline/track/surface_pieces.hpp"
 
 namespace kinectlab {
 
@@ -21,29 +21,23 @@ public:
     /// Grows from some pixels of a roughly known plane to all of its surface. Nothing, and what was
     /// followed before stays, where they belong to no flat piece.
     [[nodiscard]] std::optional<ShapeFit> grow(
-        const RgbdFrame& frame,
-        const DisparityImage& image,
-        const Shape& rough,
-        std::span<const std::uint32_t> pixels
+        const DisparityImage& image, const Shape& rough, std::span<const std::uint32_t> pixels
     );
 
     /// The plane that was grown, refined on this frame; nothing where it is not seen.
-    [[nodiscard]] std::optional<ShapeFit> follow(
-        const RgbdFrame& frame, const DisparityImage& image
-    );
+    [[nodiscard]] std::optional<ShapeFit> follow(const DisparityImage& image);
 
     [[nodiscard]] bool is_grown() const { return plane_.has_value(); }
     void forget() { plane_.reset(); }
 
 private:
     void find_near(const DisparityImage& image, const Shape& plane);
-    void keep_connected(const RgbdFrame& frame, const std::vector<std::uint8_t>& known);
+    void keep_connected(const std::vector<std::uint8_t>& known);
     [[nodiscard]] std::optional<ShapeFit> fit(const DisparityImage& image, const Shape& guess);
 
     RgbdCamera camera_;
     DisparityScale scale_;
     ShapeFitter fitter_;
-    SurfacePieces pieces_;
     std::optional<Shape> plane_;
     std::vector<std::uint8_t> region_;  ///< of plane_, a byte a pixel
     std::vector<std::uint8_t> near_, growing_;
