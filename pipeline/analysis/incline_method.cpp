@@ -126,6 +126,20 @@ void measure(
     );
     const Measurement seen =
         budget.measure("", "", [](const VectorXd& y) { return y[kInclineSlope]; }, {});
+    out.facts["path_angle_deg"] = seen.value / kDegree;
+    if (angle.given) {
+        out.facts["path_minus_plank_deg"] = (seen.value - alpha) / kDegree;
+        out.notes.push_back(fmt::format(
+            "The angle is the plank's, {:.2f}° ± {:.2f}°; the ball's path leans by {:.2f}° ± "
+            "{:.2f}° (without the camera's tilt).",
+            alpha / kDegree,
+            slope.u / kDegree,
+            seen.value / kDegree,
+            seen.u / kDegree
+        ));
+    } else {
+        out.notes.emplace_back("The angle is that of the ball's path.");
+    }
     if (angle.given &&
         std::abs(seen.value - alpha) > 4.0 * std::hypot(seen.u, slope.u) + conditions.tilt_u_rad)
         out.warnings.push_back(fmt::format(
@@ -298,7 +312,13 @@ AnalysisMethod incline_method() {
          "Of the rig, for the local g; without it 9.806 ± 0.015."}};
     method.results = {"acceleration", "angle", "g", "friction", "drag"};
     method.plots = {"position", "residuals", "path", "velocity"};
-    method.facts = {"duration_s", "start_s", "gap_share", "rolling_probability"};
+    method.facts = {
+        "duration_s",
+        "start_s",
+        "gap_share",
+        "rolling_probability",
+        "path_angle_deg",
+        "path_minus_plank_deg"};
     method.run = run;
     return method;
 }

@@ -32,6 +32,8 @@ struct SphereSettings {
 struct PlaneSettings {
     LookIn in = LookIn::moved;
     GuessBy search = GuessBy::ransac;
+    /// Name of a ball: the plane that it touches, anywhere in the picture, whatever else is bigger.
+    std::string under{};
 };
 
 /// Method "cylinder": a can, a pipe, a round rod, seen from outside.

@@ -204,6 +204,7 @@ struct ToTarget {
         return ShapeTarget{0, ShapeKind::sphere, limits_of(s), s.in, s.search};
     }
     std::optional<ShapeTarget> operator()(const PlaneSettings& s) const {
+        if (!s.under.empty()) return std::nullopt;  // the carrying plane tracker's
         return ShapeTarget{0, ShapeKind::plane, {}, s.in, s.search};
     }
     std::optional<ShapeTarget> operator()(const CylinderSettings& s) const {

@@ -1,7 +1,9 @@
 #include "pipeline/track/tracker.hpp"
 
+#include <algorithm>
 #include <set>
 
+#include "pipeline/track/carrying_plane.hpp"
 #include "pipeline/track/change.hpp"
 #include "pipeline/track/colour.hpp"
 #include "pipeline/track/shape_tracker.hpp"
@@ -76,6 +78,7 @@ Result<std::vector<std::unique_ptr<Tracker>>> make_trackers(
 ) {
     if (auto ok = check_names(objects); !ok) return tl::unexpected(ok.error());
     if (auto ok = check_settings(camera, objects); !ok) return tl::unexpected(ok.error());
+    if (auto ok = check_carrying_planes(objects); !ok) return tl::unexpected(ok.error());
     std::vector<std::unique_ptr<Tracker>> trackers;
     Result<void> all_made;
     const auto add = [&](auto own, auto make) {
@@ -97,6 +100,9 @@ Result<std::vector<std::unique_ptr<Tracker>>> make_trackers(
     add(own<TextureSettings>(objects), make_texture_tracker);
     add(own<Sift3dTrackSettings>(objects), make_sift3d_tracker);
     if (!all_made) return tl::unexpected(all_made.error());
+    // Last: it goes by where the others found the balls.
+    if (std::any_of(objects.begin(), objects.end(), is_carrying))
+        trackers.push_back(make_carrying_plane_tracker(camera, objects));
     return trackers;
 }
 

@@ -26,8 +26,9 @@ public:
     Tracker& operator=(const Tracker&) = delete;
     virtual ~Tracker() = default;
 
-    /// Adds its objects' samples; `moved` is sorted, biggest first. No allocation while `samples`
-    /// has room. An object that is not found, or not surely, is "lost": never a guess.
+    /// Adds its objects' samples to those of the trackers before it; `moved` is sorted, biggest
+    /// first. No allocation while `samples` has room. An object that is not found, or not surely,
+    /// is "lost": never a guess.
     virtual void track(
         const RgbdFrame& frame,
         std::span<const MovedPixels> moved,

@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "pipeline/core/nearest_name.hpp"
+#include "pipeline/track/carrying_plane.hpp"
 #include "server/experiments/definition.hpp"
 #include "server/experiments/definition_parts_json.hpp"
 #include "server/experiments/objects_json.hpp"
@@ -152,6 +153,11 @@ Result<Definition> read_definition(const json& document) {
         if (!object) return tl::unexpected<Error>(object.error());
         definition.objects.push_back(std::move(*object));
     }
+    Values usual;
+    for (const auto& parameter : definition.parameters)
+        if (parameter.default_value) usual[parameter.name] = *parameter.default_value;
+    if (auto ok = check_carrying_planes(plan_for(definition, usual).objects); !ok)
+        return tl::unexpected(ok.error());
     if (reader.has("preprocess")) {
         auto preprocess = read_preprocess(document["preprocess"], "preprocess");
         if (!preprocess) return tl::unexpected<Error>(preprocess.error());

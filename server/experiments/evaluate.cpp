@@ -1,10 +1,8 @@
 #include "server/experiments/evaluate.hpp"
 
 #include <algorithm>
-#include <cmath>
-#include <numbers>
 
-#include <fmt/format.h>
+#include "server/experiments/seen_settings.hpp"
 
 namespace kinectlab::experiments {
 namespace {
@@ -31,55 +29,6 @@ Result<Trajectory> trajectory_of(const std::vector<Trajectory>& all, const std::
         "was never seen",
         "see that it is in the picture, and that the scene is learned without it"
     );
-}
-
-struct Tilt {
-    double deg = 0.0;
-    double u_deg = 0.0;
-};
-
-/// Between an object's own z, a plane's normal, and the vertical; the mean over all frames.
-Result<Tilt> tilt_of(const std::vector<Trajectory>& all, const std::string& object) {
-    const auto trajectory = trajectory_of(all, object);
-    if (!trajectory) return tl::unexpected(trajectory.error());
-    Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-    double variance = 0.0;
-    double n = 0.0;
-    for (const auto& sample : trajectory->samples) {
-        if (!is_tracked(sample) || !sample.has_orientation) continue;
-        Eigen::Vector3d normal = sample.q_lab_obj * Eigen::Vector3d::UnitZ();
-        if (normal.z() < 0.0) normal = -normal;
-        sum += normal;
-        variance += sample.covariance.diagonal().tail<3>().mean();
-        n += 1.0;
-    }
-    if (n == 0.0)
-        return fail(
-            ErrorCode::bad_data, object, "was seen without its orientation", "track it as a plane"
-        );
-    constexpr double kDegree = std::numbers::pi / 180.0;
-    const double angle = std::acos(std::clamp(sum.normalized().z(), -1.0, 1.0));
-    // The camera's fixed pattern is the same in every frame: averaging does not take it away.
-    return Tilt{angle / kDegree, std::sqrt(variance / n) / kDegree};
-}
-
-Result<AnalysisSettings> settings_of(const Seen& seen) {
-    AnalysisSettings settings;
-    for (const auto& [name, source] : seen.definition.analysis.settings) {
-        if (source.tilt_of || source.tilt_u_of) {
-            const auto tilt =
-                tilt_of(seen.trajectories, source.tilt_of.value_or(source.tilt_u_of.value_or("")));
-            if (!tilt) return tl::unexpected(tilt.error());
-            settings[name] = source.tilt_of ? tilt->deg : tilt->u_deg;
-        } else if (const auto value = value_of(source.setting, seen.values)) {
-            settings[name] = *value;
-        }
-    }
-    for (const auto& [name, value] : seen.overrides) {
-        settings.erase(name);
-        if (value) settings[name] = *value;
-    }
-    return settings;
 }
 
 std::map<std::string, double> facts_of(
@@ -212,8 +161,10 @@ Result<Evaluation> evaluate(const Seen& seen, Provenance provenance, TimeNs zero
     }
     const auto settings = settings_of(seen);
     if (!settings) return tl::unexpected(settings.error());
-    auto outcome = analyse(definition.analysis.method, objects, *settings, seen.conditions);
+    auto outcome = analyse(definition.analysis.method, objects, settings->values, seen.conditions);
     if (!outcome) return tl::unexpected(outcome.error());
+    for (const auto& warning : settings->warnings)
+        outcome->warnings.push_back(warning);
 
     const auto facts = facts_of(*outcome, objects);
     for (const auto& fit : outcome->fits) {
@@ -231,7 +182,7 @@ Result<Evaluation> evaluate(const Seen& seen, Provenance provenance, TimeNs zero
     evaluation.result["analysis"] = {
         {"method", definition.analysis.method},
         {"objects", definition.analysis.objects},
-        {"settings", *settings}};
+        {"settings", settings->values}};
     evaluation.result["facts"] = facts;
     evaluation.result["acceptance"] = std::move(acceptance);
     evaluation.result["accepted"] = accepted;

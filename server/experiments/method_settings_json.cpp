@@ -77,7 +77,19 @@ MethodSettings read_sphere(ObjectReader& reader) {
 }
 
 MethodSettings read_plane(ObjectReader& reader) {
-    return PlaneSettings{read_in(reader), read_search(reader)};
+    PlaneSettings settings{read_in(reader), read_search(reader)};
+    if (!reader.has("under")) return settings;
+    settings.under = reader.text("under");
+    if (settings.under.empty())
+        reader.refuse("under", "is empty", "give the name of the ball that the plane carries");
+    for (const char* other : {"in", "search"})
+        if (reader.has(other))
+            reader.refuse(
+                "under",
+                "is given together with " + std::string(other),
+                "give one of them: under looks wherever the ball is"
+            );
+    return settings;
 }
 
 MethodSettings read_cylinder(ObjectReader& reader) {
@@ -212,7 +224,7 @@ const std::array<MethodReader, kTrackingMethods.size()>& readers() {
         {{"hue_deg", "saturation", "value", "box", "click", "learn_at_s"}, read_colour},
         {{"box", "learn_at_s", "spots", "fewest_spots"}, read_texture},
         {{"box", "learn_at_s", "scale_m", "fewest_spots"}, read_sift3d},
-        {{"in", "search"}, read_plane},
+        {{"in", "search", "under"}, read_plane},
         {{"radius_m", "min_radius_m", "max_radius_m", "in"}, read_cylinder},
         {{"half_angle_deg", "in"}, read_cone},
     }};

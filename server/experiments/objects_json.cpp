@@ -2,6 +2,7 @@
 
 #include <cctype>
 
+#include "pipeline/track/carrying_plane.hpp"
 #include "server/experiments/method_settings_json.hpp"
 #include "server/experiments/model_files.hpp"
 #include "server/experiments/preprocess_json.hpp"
@@ -88,6 +89,7 @@ Result<TrackingPlan> read_tracking_plan(const nlohmann::json& document) {
         }
         objects.push_back(std::move(*object));
     }
+    if (auto ok = check_carrying_planes(objects); !ok) return tl::unexpected(ok.error());
     return plan;
 }
 

@@ -65,6 +65,20 @@ TEST(Incline, ToldTheAngleTheTiltOfTheCameraDoesNotCount) {
     EXPECT_EQ(line(g, "camera tilt"), -1.0);
     EXPECT_NEAR(line(g, "incline"), g.value / std::tan(angle) * 0.1 * kDegree, 1e-6);
     EXPECT_GT(line(g, "rolling resistance"), 0.0) << "it was not given";
+    EXPECT_NEAR(out->facts.at("path_angle_deg"), 10.0, 0.2);
+    EXPECT_NEAR(
+        out->facts.at("path_minus_plank_deg"), out->facts.at("path_angle_deg") - 10.0, 1e-9
+    );
+    EXPECT_THAT(out->notes, Contains(HasSubstr("the plank's, 10.00°")));
+}
+
+TEST(Incline, ToldNoAngleItSaysThatItIsThePaths) {
+    const double angle = 10.0 * kDegree;
+    const auto out = analysed("incline", record(3.5, rolls(angle, kG * std::sin(angle) / 1.4)), {});
+    ASSERT_TRUE(out) << to_text(out.error());
+    EXPECT_THAT(out->notes, Contains(HasSubstr("that of the ball's path")));
+    EXPECT_EQ(out->facts.count("path_minus_plank_deg"), 0u);
+    EXPECT_NEAR(out->facts.at("path_angle_deg"), 10.0, 0.2);
 }
 
 TEST(Incline, KnowsASlidingBall) {

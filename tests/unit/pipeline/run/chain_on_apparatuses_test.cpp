@@ -122,6 +122,39 @@ TEST(ChainOnApparatuses, FollowsABallDownAnIncline) {
     expect_followed(follow({"incline", {}}, {ball("ball", 0.035)}, 2.0).front(), 55);
 }
 
+/// The sine of the largest angle between the plank and what was followed while the ball was free.
+double plank_off(double incline_deg) {
+    simulate::RunSettings run;
+    run.rig.apparatus = {"incline", {{"incline_deg", incline_deg}}};
+    run.rig.with_colour = false;
+    run.rig.seed = 3;
+    run.seconds = 1.0;
+    const auto rig = simulate::SimulatedRig::create(run.rig);
+    const std::vector<ObjectSpec> objects{
+        ball("ball", 0.035), {"plank", PlaneSettings{.under = "ball"}}};
+    Chain chain = std::move(Chain::create({rig->camera(), objects}).value());
+    const double slope = incline_deg * std::acos(-1.0) / 180.0;
+    const Eigen::Vector3d plank(std::sin(slope), 0.0, std::cos(slope));
+    double off = 0.0;
+    const auto sink = [&](const RgbdFrame& frame, const simulate::Truth& truth) -> Result<void> {
+        if (truth.motion == simulate::Motion::at_rest) return chain.learn(frame);
+        const auto samples = chain.track(frame).value();
+        if (truth.motion != simulate::Motion::free) return {};
+        EXPECT_EQ(samples[1].status, TrackStatus::tracked) << incline_deg;
+        const Eigen::Vector3d normal =
+            rig->T_lab_cam().linear() * (samples[1].q_cam_obj * Eigen::Vector3d::UnitZ());
+        off = std::max(off, normal.cross(plank).norm());
+        return {};
+    };
+    EXPECT_TRUE(simulate::simulate_run(run, sink));
+    return off;
+}
+
+TEST(ChainOnApparatuses, FollowsThePlankUnderTheBall) {
+    for (const double incline_deg : {1.0, 8.0, 30.0})
+        EXPECT_LT(plank_off(incline_deg), 0.015) << incline_deg;
+}
+
 TEST(ChainOnApparatuses, FollowsAMassOnASpring) {
     expect_followed(follow({"spring", {}}, {ball("ball", 0.04)}, 3.0).front(), 85);
 }

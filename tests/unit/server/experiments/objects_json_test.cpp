@@ -36,6 +36,20 @@ TEST(Objects, ReadsSpheresAndWhateverMoved) {
     EXPECT_EQ(method_of(objects[2]), "change");
 }
 
+TEST(Objects, ReadsThePlaneUnderABall) {
+    const auto plan = parse_json(
+                          R"({"objects":[
+        {"name":"ball","method":"sphere","radius_m":0.05},
+        {"name":"plank","method":"plane","under":"ball"},
+        {"name":"wall","method":"plane","in":"scene"}]})",
+                          "objects.json"
+    )
+                          .and_then(read_tracking_plan);
+    ASSERT_TRUE(plan) << to_text(plan.error());
+    EXPECT_EQ(std::get<PlaneSettings>(plan->objects[1].settings).under, "ball");
+    EXPECT_TRUE(std::get<PlaneSettings>(plan->objects[2].settings).under.empty());
+}
+
 struct Wrong {
     const char* text;
     const char* field;
@@ -59,6 +73,18 @@ INSTANTIATE_TEST_SUITE_P(
         Wrong{R"([])", "", "objects"},
         Wrong{R"({"objects":[3]})", "objects[0]", "name, method"},
         Wrong{R"({"objects":[{"method":"sphere"}]})", "objects[0].name", "text"},
+        Wrong{
+            R"({"objects":[{"name":"a","method":"plane","under":"b","in":"scene"}]})",
+            "objects[0].under",
+            "one of them"},
+        Wrong{
+            R"({"objects":[{"name":"a","method":"plane","under":""}]})",
+            "objects[0].under",
+            "name of the ball"},
+        Wrong{
+            R"({"objects":[{"name":"b","method":"sphere"},{"name":"a","method":"plane","under":"c"}]})",
+            "objects[1].under",
+            "b"},
         Wrong{
             R"({"objects":[{"name":"=1+1","method":"change"}]})", "objects[0].name", "begin with"},
         Wrong{R"({"objects":[{"name":"a","method":"shpere"}]})", "objects[0].method", "sphere"},

@@ -1,0 +1,122 @@
+#include "pipeline/track/plane_region.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace kinectlab {
+namespace {
+
+constexpr double kNearSigmas = 4.0;  // wider would take in more of a face that begins at its edge
+constexpr std::size_t kFewestPixels = 200;
+constexpr int kMostRounds = 12;
+constexpr double kGrown = 1.02;  // times as many pixels: else it has reached its edges
+constexpr double kMaxRmsSigmas = 3.0;
+constexpr double kMinInlierShare = 0.9;  // less where a fit slid from one face to the next
+constexpr double kMostTurnU = 0.02;      // rad; planes through a strip of pixels may be turned more
+
+}  // namespace
+
+PlaneRegion::PlaneRegion(const RgbdCamera& camera)
+    : camera_(camera), scale_(camera), fitter_(camera) {
+    const auto pixels = static_cast<std::size_t>(camera.depth.width * camera.depth.height);
+    region_.resize(pixels);
+    near_.resize(pixels);
+    growing_.resize(pixels);
+}
+
+/// The disparity of a plane is linear over the picture.
+void PlaneRegion::find_near(const DisparityImage& image, const Shape& plane) {
+    const Pinhole& view = camera_.depth;
+    const Eigen::Vector3d m =
+        plane.axis / (plane.axis.dot(plane.point) * scale_.inverse_depth_step);
+    const auto per_column = static_cast<float>(m.x() / view.fx);
+    // The noise grows with the rounding of near readings only, so one bound does for a picture.
+    const double s_here = scale_.steps_at(std::max(0.1, plane.point.z()));
+    const auto gate = static_cast<float>(kNearSigmas * scale_.sigma_at(s_here));
+    std::uint8_t* near = near_.data();
+    for (int v = 0; v < view.height; ++v, near += view.width) {
+        const float* row = image.row(v);
+        const auto first = static_cast<float>(m.dot(view.ray(0, v)));
+        for (int u = 0; u < view.width; ++u) {
+            const float off = row[u] - (first + per_column * static_cast<float>(u));
+            near[u] = static_cast<std::uint8_t>((row[u] > 0.0F) & (std::abs(off) < gate));
+        }
+    }
+}
+
+/// All in near_ that goes on from what is known to be of the plane: the ball may lie across it and
+/// part it in two. Lying in one plane they need no other proof of going on, and a plane seen so
+/// steeply that it leaps from row to row would not pass it.
+void PlaneRegion::keep_connected(const std::vector<std::uint8_t>& known) {
+    kept_.clear();
+    const auto size = static_cast<std::uint32_t>(near_.size());
+    const auto width = static_cast<std::uint32_t>(camera_.depth.width);
+    const auto visit = [&](std::uint32_t pixel) {
+        if (near_[pixel] == 0) return;
+        near_[pixel] = 0;
+        kept_.push_back(pixel);
+    };
+    for (std::uint32_t start = 0; start < size; ++start)
+        if (known[start] != 0) visit(start);
+    for (std::size_t next = 0; next < kept_.size(); ++next) {
+        const std::uint32_t at = kept_[next], column = at % width;
+        if (column > 0) visit(at - 1);
+        if (column + 1 < width) visit(at + 1);
+        if (at >= width) visit(at - width);
+        if (at + width < size) visit(at + width);
+    }
+    std::sort(kept_.begin(), kept_.end());
+}
+
+std::optional<ShapeFit> PlaneRegion::fit(const DisparityImage& image, const Shape& guess) {
+    auto found = fitter_.fit(image, kept_, guess, false);
+    if (!found) return found;
+    const double s = scale_.steps_at(std::max(0.1, found->shape.point.z()));
+    const double turn = found->covariance.bottomRightCorner<3, 3>().trace() - kAnyAngle;
+    if (found->quality.rms_steps > kMaxRmsSigmas * scale_.sigma_at(s) ||
+        found->quality.inlier_share < kMinInlierShare || !(turn < kMostTurnU * kMostTurnU))
+        found.reset();
+    return found;
+}
+
+std::optional<ShapeFit> PlaneRegion::grow(
+    const DisparityImage& image, const Shape& rough, std::span<const std::uint32_t> pixels
+) {
+    std::fill(growing_.begin(), growing_.end(), std::uint8_t{0});
+    kept_.assign(pixels.begin(), pixels.end());
+    auto found = fit(image, rough);
+    std::size_t size = kept_.size();
+    for (int i = 0; found && i < kMostRounds; ++i) {
+        for (const std::uint32_t pixel : kept_)
+            growing_[pixel] = 1;
+        find_near(image, found->shape);
+        keep_connected(growing_);
+        found = fit(image, found->shape);
+        const auto before = static_cast<double>(std::exchange(size, kept_.size()));
+        std::fill(growing_.begin(), growing_.end(), std::uint8_t{0});
+        if (static_cast<double>(size) < kGrown * before) break;
+    }
+    if (!found || kept_.size() < kFewestPixels) return std::nullopt;
+    plane_ = found->shape;
+    std::swap(region_, growing_);
+    for (const std::uint32_t pixel : kept_)
+        region_[pixel] = 1;
+    return found;
+}
+
+std::optional<ShapeFit> PlaneRegion::follow(const DisparityImage& image) {
+    if (!plane_) return std::nullopt;
+    find_near(image, *plane_);
+    keep_connected(region_);
+    if (kept_.size() < kFewestPixels) return std::nullopt;
+    const auto found = fit(image, *plane_);
+    if (!found) return std::nullopt;
+    plane_ = found->shape;
+    std::fill(region_.begin(), region_.end(), std::uint8_t{0});
+    for (const std::uint32_t pixel : kept_)
+        region_[pixel] = 1;
+    return found;
+}
+
+}  // namespace kinectlab

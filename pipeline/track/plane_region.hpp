@@ -1,0 +1,47 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "pipeline/core/camera.hpp"
+#include "pipeline/core/disparity.hpp"
+#include "pipeline/features/surface_points.hpp"
+#include "pipeline/track/shape_fit.hpp"
+
+namespace kinectlab {
+
+/// A plane as far as its surface goes on, from frame to frame: what lies in the same endless plane
+/// elsewhere, where it cuts a wall, is none of it. Keeps its buffers. Not thread-safe.
+class PlaneRegion {
+public:
+    explicit PlaneRegion(const RgbdCamera& camera);
+
+    /// Grows from some pixels of a roughly known plane to all of its surface. Nothing, and what was
+    /// followed before stays, where they belong to no flat piece.
+    [[nodiscard]] std::optional<ShapeFit> grow(
+        const DisparityImage& image, const Shape& rough, std::span<const std::uint32_t> pixels
+    );
+
+    /// The plane that was grown, refined on this frame; nothing where it is not seen.
+    [[nodiscard]] std::optional<ShapeFit> follow(const DisparityImage& image);
+
+    [[nodiscard]] bool is_grown() const { return plane_.has_value(); }
+    void forget() { plane_.reset(); }
+
+private:
+    void find_near(const DisparityImage& image, const Shape& plane);
+    void keep_connected(const std::vector<std::uint8_t>& known);
+    [[nodiscard]] std::optional<ShapeFit> fit(const DisparityImage& image, const Shape& guess);
+
+    RgbdCamera camera_;
+    DisparityScale scale_;
+    ShapeFitter fitter_;
+    std::optional<Shape> plane_;
+    std::vector<std::uint8_t> region_;  ///< of plane_, a byte a pixel
+    std::vector<std::uint8_t> near_, growing_;
+    std::vector<std::uint32_t> kept_;
+};
+
+}  // namespace kinectlab
