@@ -43,6 +43,7 @@ Result<SwingParameters> follow_free_swing(
     SwingParameters parameters = guess.parameters;
     range = {guess.begin, guess.end, false, false};
     double noise = 0.0;
+    bool looked_again = false;
     for (bool whole = false;; whole = range.begin_found && range.end_found) {
         const Samples known = samples.subspan(range.begin, range.end - range.begin);
         const double periods = (known.back().t - known.front().t) / guess.period;
@@ -64,7 +65,13 @@ Result<SwingParameters> follow_free_swing(
             drag_mask(free, many ? DragLaw::both : DragLaw::linear),
             0.3
         );
-        if (whole) return parameters;
+        if (whole) {
+            if (looked_again || (range.begin == 0 && range.end == samples.size()))
+                return parameters;
+            // An end that a few periods' fit could not follow may be followed by the whole one's.
+            looked_again = true;
+            range.begin_found = range.end_found = false;
+        }
 
         const Residuals residuals = swing_residuals(known, parameters);
         noise = noise_factor(known, residuals);

@@ -96,6 +96,17 @@ TEST(PendulumAccuracy, PeriodIsTheMeanTimeBetweenCrossings) {
     EXPECT_NEAR(named(*result, "quality_factor").value, std::numbers::pi / (0.1 * small), 1e-3);
 }
 
+// The fit of the few periods that it starts with knows one kind of drag only.
+TEST(PendulumAccuracy, KeepsTheFirstSwingsUnderStrongDrag) {
+    const Swing s{.amplitude_deg = 25, .damping = 0.01, .quadratic = 0.08, .seconds = 60};
+    const auto result =
+        analyse_pendulum(with_noise(generate(s), 5, {5e-4, 5e-4}), exact_settings(s));
+    ASSERT_TRUE(result);
+    EXPECT_TRUE(result->warnings.empty()) << result->warnings.front();
+    const Measurement& amplitude = named(*result, "amplitude");
+    EXPECT_NEAR(amplitude.value, 25.0 * std::numbers::pi / 180.0, 4.0 * amplitude.u);
+}
+
 TEST(PendulumAccuracy, LeavesOutRestHandAndMagnet) {
     const Swing s{.seconds = 20.0, .rest = 3.0, .held = 2.0};
     const auto result =
