@@ -26,7 +26,7 @@ ObjectSpec plank(const std::string& under = "ball") {
 }
 
 /// A plank that falls to the right, seen flatly from above, before a wall and above a floor that
-/// are many times its size.
+/// are many times its size; another board goes on in the same plane after a gap.
 struct Bench {
     ShapeRoom room{5};
     Eigen::Matrix3d turn;
@@ -39,7 +39,8 @@ struct Bench {
             test::ball(Eigen::Vector3d::Zero(), kRadius),
             test::box(middle, turn, {0.6, 0.01, 0.15}),
             test::wall({0, 0, 3.2}, {0, 0, -1}),
-            test::wall({0, kFloor, 0}, {0, -1, 0})};
+            test::wall({0, kFloor, 0}, {0, -1, 0}),
+            test::box(middle + 0.85 * turn.col(0), turn, {0.15, 0.01, 0.15})};
         put(-0.3);
     }
     [[nodiscard]] Eigen::Vector3d normal() const { return -turn.col(1); }
@@ -86,6 +87,16 @@ TEST(CarryingPlane, IsThePlankAndNotTheMuchBiggerWallOrFloor) {
     }
 }
 
+TEST(CarryingPlane, IsThePlankThoughAWallStandsRightBehindIt) {
+    Bench bench(8.0);
+    bench.room.solids[2] = test::wall({0, 0, 1.75}, {0, 0, -1});
+    bench.room.changed();
+    auto trackers = trackers_for(bench);
+    const auto sample = seen(trackers, bench);
+    ASSERT_EQ(sample.status, TrackStatus::tracked);
+    EXPECT_LT(bench.turn_off(sample), 0.01);
+}
+
 TEST(CarryingPlane, ItsTurnIsAsSureAsItSays) {
     Bench bench(12.0);
     auto trackers = trackers_for(bench);
@@ -122,8 +133,10 @@ TEST(CarryingPlane, IsLostBeforeTheBallTouchesOne) {
     const auto none = seen(trackers, bench, false);
     EXPECT_EQ(none.status, TrackStatus::lost);
     EXPECT_FALSE(none.quality.why_lost.empty());
-    bench.put(-0.3, 0.06);  // held above it
-    EXPECT_EQ(seen(trackers, bench).status, TrackStatus::lost);
+    for (const double above_m : {0.06, 0.018}) {
+        bench.put(-0.3, above_m);
+        EXPECT_EQ(seen(trackers, bench).status, TrackStatus::lost) << above_m;
+    }
     bench.put(-0.3);
     EXPECT_EQ(seen(trackers, bench).status, TrackStatus::tracked);
     trackers.back()->reset();
