@@ -13,27 +13,6 @@ namespace kinectlab {
 namespace {
 
 constexpr std::size_t kMaxMeshBytes = 512U << 20U;
-constexpr double kHugeM = 5.0;    // nothing larger is seen whole by a Kinect
-constexpr double kTinyM = 0.005;  // nothing smaller is seen at all
-
-Eigen::Vector3d size_of(const TriangleMesh& mesh) {
-    Eigen::Vector3f low = mesh.vertices.front(), high = low;
-    for (const auto& vertex : mesh.vertices) {
-        low = low.cwiseMin(vertex);
-        high = high.cwiseMax(vertex);
-    }
-    return (high - low).cast<double>();
-}
-
-std::string rounded(double value) {
-    char text[32];
-    std::snprintf(text, sizeof text, "%.3g", value);
-    return text;
-}
-
-std::string times(const Eigen::Vector3d& size) {
-    return rounded(size.x()) + " x " + rounded(size.y()) + " x " + rounded(size.z());
-}
 
 }  // namespace
 
@@ -131,33 +110,6 @@ Result<MeshFile> read_mesh(const std::filesystem::path& file) {
     if (auto read = read_file(file, kMaxMeshBytes, bytes); !read)
         return tl::unexpected<Error>(read.error());
     return parse(bytes, file.string());
-}
-
-std::vector<std::string> mesh_warnings(
-    const MeshFile& file, const std::string& name, double metres_per_unit
-) {
-    std::vector<std::string> warnings;
-    if (file.dropped_vertices > 0 || file.dropped_triangles > 0)
-        warnings.push_back(
-            name + ": left out " + std::to_string(file.dropped_vertices) +
-            " points that are not finite and " + std::to_string(file.dropped_triangles) +
-            " triangles without an area"
-        );
-    if (file.mesh.vertices.empty()) return warnings;
-    const Eigen::Vector3d size = size_of(file.mesh) * metres_per_unit;
-    const double largest = size.maxCoeff();
-    if (largest > kHugeM)
-        warnings.push_back(
-            name + ": the model is " + times(size) +
-            " m; this looks like millimetres (it would be " + times(1e-3 * size) +
-            " m): set model_unit_m to " + rounded(1e-3 * metres_per_unit)
-        );
-    if (largest < kTinyM)
-        warnings.push_back(
-            name + ": the model is " + times(size) + " m, too small to be seen; is model_unit_m " +
-            rounded(metres_per_unit) + " right?"
-        );
-    return warnings;
 }
 
 }  // namespace kinectlab

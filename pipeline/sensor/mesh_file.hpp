@@ -52,7 +52,8 @@ struct MeshFile {
 [[nodiscard]] Result<MeshFile> read_mesh(const std::filesystem::path& file);
 
 /// What a person should know of a model before it is used: sizes that look like another unit,
-/// what was left out. Empty if there is nothing to say. `metres_per_unit` as it will be used.
+/// holes, what was left out. Empty if there is nothing to say. `metres_per_unit` as it will be
+/// used.
 [[nodiscard]] std::vector<std::string> mesh_warnings(
     const MeshFile& file, const std::string& name, double metres_per_unit
 );

@@ -44,9 +44,11 @@ public:
             TrackSample sample;
             sample.t = frame.t;
             sample.object = target.object.index;
-            if (has_colour && !target.model) learn(target, frame, moved, rank);
+            std::string_view why_lost = "there is no colour picture";
+            if (has_colour && !target.model) why_lost = learn(target, frame, moved, rank);
             if (!target.object.settings.box) ++rank;
-            if (has_colour && target.model) find(target, frame, moved, sample);
+            if (has_colour && target.model) why_lost = find(target, frame, moved, sample);
+            sample.quality.why_lost = why_lost;
             samples.push_back(sample);
         }
     }
@@ -101,18 +103,20 @@ private:
             mask_[pixel] = 1;
     }
 
-    void learn(
+    /// Why it has no model yet; empty if it has.
+    std::string_view learn(
         Target& target, const RgbdFrame& frame, std::span<const MovedPixels> moved, std::size_t rank
     ) {
         const Sift3dTrackSettings& settings = target.object.settings;
-        if (frame.t - *first_t_ < from_seconds(settings.learn_at_s)) return;
+        if (frame.t - *first_t_ < from_seconds(settings.learn_at_s)) return "it is not learned yet";
         const auto pixels = region_.find(frame, moved, settings.box, rank);
-        if (pixels.empty()) return;
+        if (pixels.empty()) return "nothing is there to learn it from";
         std::fill(mask_.begin(), mask_.end(), 0);
         mark(pixels);
         gather(frame, true);
         auto spots = find_sift3d(points_, settings_of(target));
-        if (static_cast<int>(spots.descriptors.size()) < settings.fewest_spots) return;
+        if (static_cast<int>(spots.descriptors.size()) < settings.fewest_spots)
+            return "what was to be learned shows too few spots";
         target.origin_cam.setZero();
         for (const auto& spot : spots.keypoints)
             target.origin_cam += spot.p_cam.cast<double>();
@@ -125,6 +129,7 @@ private:
         target.seen = true;
         target.seen_at = frame.t;
         target.model = std::move(spots);
+        return {};
     }
 
     void mark_near(const RgbdFrame& frame, const Eigen::Vector3d& place_cam, double radius_m) {
@@ -139,7 +144,8 @@ private:
         }
     }
 
-    void find(
+    /// Why it is lost; empty if it is tracked.
+    std::string_view find(
         Target& target,
         const RgbdFrame& frame,
         std::span<const MovedPixels> moved,
@@ -166,7 +172,7 @@ private:
                 mark(segment);
             pose = look(!moved.empty());
         }
-        if (!pose) return;
+        if (!pose) return "too few of its spots are seen together";
         target.seen = true;
         target.seen_at = frame.t;
         target.place_cam = pose->fit.T_cam_obj.translation();
@@ -178,6 +184,7 @@ private:
         sample.quality.points = pose->fit.inliers;
         sample.quality.inlier_share =
             static_cast<double>(pose->fit.inliers) / std::max(1, pose->matches);
+        return {};
     }
 
     RgbdCamera camera_;

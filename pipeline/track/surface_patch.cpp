@@ -106,6 +106,7 @@ public:
             TrackSample lost;
             lost.t = frame.t;
             lost.object = targets_[i].object.index;
+            lost.quality.why_lost = "nothing in view fits its model";
             samples.push_back(lost);
         }
     }

@@ -49,9 +49,11 @@ public:
             TrackSample sample;
             sample.t = frame.t;
             sample.object = target.object.index;
-            if (has_colour && !target.model) learn(target, frame, moved, rank);
+            std::string_view why_lost = "there is no colour picture";
+            if (has_colour && !target.model) why_lost = learn(target, frame, moved, rank);
             if (!target.object.settings.box) ++rank;
-            if (has_colour && target.model) find(target, frame, moved, sample);
+            if (has_colour && target.model) why_lost = find(target, frame, moved, sample);
+            sample.quality.why_lost = why_lost;
             samples.push_back(sample);
         }
     }
@@ -105,13 +107,14 @@ private:
         return clipped(left - margin_px, top - margin_px, right + margin_px, bottom + margin_px);
     }
 
-    void learn(
+    /// Why it has no model yet; empty if it has.
+    std::string_view learn(
         Target& target, const RgbdFrame& frame, std::span<const MovedPixels> moved, std::size_t rank
     ) {
         const TextureSettings& settings = target.object.settings;
-        if (frame.t - *first_t_ < from_seconds(settings.learn_at_s)) return;
+        if (frame.t - *first_t_ < from_seconds(settings.learn_at_s)) return "it is not learned yet";
         const auto pixels = region_.find(frame, moved, settings.box, rank);
-        if (pixels.empty()) return;
+        if (pixels.empty()) return "nothing is there to learn it from";
         std::fill(on_object_.begin(), on_object_.end(), 0);
         for (const auto pixel : pixels)
             on_object_[pixel] = 1;
@@ -120,11 +123,12 @@ private:
         auto model = TextureModel::learn(
             camera_, frame, std::move(finder), on_object_, settings.fewest_spots
         );
-        if (!model) return;
+        if (!model) return "what was to be learned shows too few spots";
         target.place_cam = model->origin_cam();
         target.seen = true;
         target.seen_at = frame.t;
         target.model.emplace(std::move(*model));
+        return {};
     }
 
     [[nodiscard]] ImageRegion near_last_place(const Target& target) const {
@@ -149,7 +153,8 @@ private:
         return all;
     }
 
-    void find(
+    /// Why it is lost; empty if it is tracked.
+    std::string_view find(
         Target& target,
         const RgbdFrame& frame,
         std::span<const MovedPixels> moved,
@@ -163,7 +168,7 @@ private:
         if (target.seen && frame.t - target.seen_at <= kMemory)
             pose = look(near_last_place(target));
         if (!pose) pose = look(where_it_may_be(frame, moved));
-        if (!pose) return;
+        if (!pose) return "too few of its spots are seen together";
         target.seen = true;
         target.seen_at = frame.t;
         target.place_cam = pose->fit.T_cam_obj.translation();
@@ -176,6 +181,7 @@ private:
         sample.quality.inlier_share =
             static_cast<double>(pose->fit.inliers) / std::max(1, pose->matches);
         sample.quality.rms_steps = pose->rms_steps;
+        return {};
     }
 
     RgbdCamera camera_;

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cstdio>
 #include <map>
 
@@ -70,6 +71,42 @@ json count_moved(const TrackedRecording& recording) {
     return list;
 }
 
+/// Why frames of an object are lost, and how many for each reason.
+std::map<std::string, std::size_t> reasons_of(const std::vector<TrackSample>& samples) {
+    std::map<std::string, std::size_t> reasons;
+    for (const auto& sample : samples)
+        if (sample.status == TrackStatus::lost && !sample.quality.why_lost.empty())
+            ++reasons[std::string(sample.quality.why_lost)];
+    return reasons;
+}
+
+/// An object that is hardly ever seen is most likely a wrong setting: its commonest reason is told.
+void tell_lost(const TrackedRecording& recording) {
+    for (std::size_t i = 0; i < recording.objects.size(); ++i) {
+        const auto& samples = recording.samples[i];
+        const auto lost = static_cast<std::size_t>(std::count_if(
+            samples.begin(),
+            samples.end(),
+            [](const TrackSample& sample) { return sample.status == TrackStatus::lost; }
+        ));
+        const auto reasons = reasons_of(samples);
+        if (2 * lost <= samples.size() || reasons.empty()) continue;
+        const auto most =
+            std::max_element(reasons.begin(), reasons.end(), [](const auto& a, const auto& b) {
+                return a.second < b.second;
+            });
+        std::fprintf(
+            stderr,
+            "warning: %s: lost in %zu of %zu frames, in %zu because %s\n",
+            recording.objects[i].name.c_str(),
+            lost,
+            samples.size(),
+            most->second,
+            most->first.c_str()
+        );
+    }
+}
+
 json summary_of(
     const TrackedRecording& recording,
     const std::vector<Trajectory>& trajectories,
@@ -78,6 +115,10 @@ json summary_of(
     json objects = json::array();
     for (const auto& trajectory : trajectories)
         objects.push_back(count_states(trajectory));
+    json why_lost = json::object();
+    for (std::size_t i = 0; i < recording.objects.size(); ++i)
+        if (auto reasons = reasons_of(recording.samples[i]); !reasons.empty())
+            why_lost[recording.objects[i].name] = std::move(reasons);
     json summary = {
         {"recording", arguments.recording},
         {"poses", arguments.out},
@@ -87,6 +128,7 @@ json summary_of(
         {"lab_frame",
          recording.source.T_lab_cam ? "known" : "assumed: level camera that looks along y"},
         {"objects", std::move(objects)},
+        {"why_lost", std::move(why_lost)},
         {"provenance",
          {{"program", "kinectlab"},
           {"version", config::version()},
@@ -109,6 +151,7 @@ int track(int argc, char** argv) {
     const auto recording = track_recording(arguments.recording, std::move(*plan));
     if (!recording) return report(recording.error());
 
+    tell_lost(*recording);
     const auto trajectories = trajectories_of(*recording);
     const std::string csv = poses_to_csv(trajectories);
     if (arguments.out.empty()) {

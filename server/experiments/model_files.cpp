@@ -12,12 +12,13 @@ namespace kinectlab::experiments {
 nlohmann::json with_models_beside(const std::filesystem::path& file, nlohmann::json document) {
     if (!document.is_object() || !document.contains("objects") || !document["objects"].is_array())
         return document;
+    const auto folder = std::filesystem::absolute(file).parent_path();
     for (auto& object : document["objects"]) {
         if (!object.is_object() || !object.contains("model") || !object["model"].is_string())
             continue;
         const std::filesystem::path model = object["model"].get<std::string>();
         if (model.is_relative() && !model.empty())
-            object["model"] = (file.parent_path() / model).lexically_normal().string();
+            object["model"] = (folder / model).lexically_normal().string();
     }
     return document;
 }

@@ -193,7 +193,29 @@ TEST(MeshFile, WhatIsNotFiniteOrHasNoAreaIsLeftOutAndTold) {
     EXPECT_EQ(read->mesh.triangles.size(), 1U);
     EXPECT_EQ(read->dropped_vertices, 1U);
     EXPECT_EQ(read->dropped_triangles, 3U);
-    ASSERT_EQ(mesh_warnings(*read, "m.obj", 1.0).size(), 1U);
+    const auto warnings = mesh_warnings(*read, "m.obj", 1.0);
+    ASSERT_EQ(warnings.size(), 2U);
+    EXPECT_NE(warnings[0].find("left out 1 points"), std::string::npos) << warnings[0];
+}
+
+TEST(MeshFile, HolesAreToldWithTheNumbers) {
+    // A tetrahedron, its corners repeated for each face as many files do, then without one face.
+    const std::string corners = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nv 0 0 0\nv 1 0 0\n";
+    const std::string three = "f 1 3 2\nf 5 6 4\nf 1 4 3\n";
+    const auto closed = parse_obj(bytes_of(corners + three + "f 2 3 4\n"), "m");
+    EXPECT_TRUE(mesh_warnings(*closed, "m.obj", 1.0).empty());
+    const auto open = mesh_warnings(*parse_obj(bytes_of(corners + three), "m"), "m.obj", 1.0);
+    ASSERT_EQ(open.size(), 1U);
+    EXPECT_NE(open[0].find("3 of 6 edges"), std::string::npos) << open[0];
+}
+
+TEST(MeshFile, AModelInCentimetresIsNotTakenForMillimetres) {
+    MeshFile box;
+    box.mesh.vertices = {{0, 0, 0}, {16, 10, 12}};
+    const auto warnings = mesh_warnings(box, "box.stl", 1.0);
+    ASSERT_EQ(warnings.size(), 1U);
+    EXPECT_NE(warnings[0].find("centimetres (0.16 x 0.1 x 0.12 m)"), std::string::npos);
+    EXPECT_EQ(warnings[0].find("millimetres"), std::string::npos) << warnings[0];
 }
 
 TEST(MeshFile, NothingLeftIsAnError) {

@@ -1,9 +1,12 @@
 #include "server/experiments/objects_json.hpp"
 
+#include <filesystem>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include "server/experiments/model_files.hpp"
 #include "server/experiments/strict_json.hpp"
 
 namespace kinectlab::experiments {
@@ -34,6 +37,17 @@ TEST(Objects, ReadsSpheresAndWhateverMoved) {
     EXPECT_FALSE(free.radius_m);
     EXPECT_EQ(free.min_radius_m, 0.02);
     EXPECT_EQ(method_of(objects[2]), "change");
+}
+
+TEST(Objects, AModelIsLookedForBesideTheFileThatNamesIt) {
+    const auto document = nlohmann::json::parse(
+        R"({"objects":[{"model":"box.obj"},{"model":"/models/box.obj"},{"name":"bob"}]})"
+    );
+    const auto here = with_models_beside("mine.json", document);  // as typed in its own folder
+    EXPECT_EQ(here["objects"][0]["model"], (std::filesystem::current_path() / "box.obj").string());
+    EXPECT_EQ(here["objects"][1]["model"], "/models/box.obj");
+    const auto there = with_models_beside("/mine/objects.json", document);
+    EXPECT_EQ(there["objects"][0]["model"], "/mine/box.obj");
 }
 
 TEST(Objects, ReadsThePlaneUnderABall) {
