@@ -2,6 +2,7 @@
 
 #include <atomic>
 #include <cstring>
+#include <filesystem>
 #include <mutex>
 
 #include <OpenNI.h>
@@ -45,10 +46,18 @@ tl::unexpected<Error> no_device(const std::string& uri, std::string why) {
         there += (there.empty() ? "" : ", ") + other;
     while (!why.empty() && std::isspace(static_cast<unsigned char>(why.back())) != 0)
         why.pop_back();
+    std::error_code code;
+    if (std::filesystem::is_regular_file(uri, code))
+        return fail(
+            ErrorCode::bad_data,
+            uri,
+            "is no recording that OpenNI2 can play" + (why.empty() ? why : ": " + why),
+            "give a whole .oni file; one that was cut off while it was recorded has lost its index"
+        );
     return fail(
         ErrorCode::unavailable,
         uri.empty() ? "any device" : uri,
-        "cannot be opened: " + why,
+        "cannot be opened: " + (why.empty() ? "its driver does not say why" : why),
         there.empty() ? "plug a device in; none is there" : "devices there: " + there
     );
 }

@@ -29,7 +29,7 @@ tl::unexpected<Error> forward(const Result<T>& failed) {
 // Positions are wrong by as much as the assumption is.
 void warn_of_unknown_camera(const std::filesystem::path& path) {
     std::error_code code;
-    if (!std::filesystem::is_directory(path, code) ||
+    if (!std::filesystem::exists(path / "depth.txt", code) ||
         std::filesystem::exists(path / "camera.json", code))
         return;
     std::cerr << path.string()
