@@ -24,6 +24,7 @@ Figures measure_coverage();
 Figures measure_coverage_bodies();
 Figures measure_pendulum_coverage();
 Figures measure_foucault_coverage();
+Figures measure_arc_coverage();
 Figures measure_pendulum_speed();
 Figures measure_frames_pendulum();
 Figures measure_frames_foucault();
@@ -70,6 +71,7 @@ inline constexpr std::array kMeasurements{
     Measurement{"coverage bodies: collision, rigid body, path", measure_coverage_bodies},
     Measurement{"coverage pendulum", measure_pendulum_coverage},
     Measurement{"coverage foucault", measure_foucault_coverage},
+    Measurement{"coverage arc alone, 20°", measure_arc_coverage},
     Measurement{"coverage frames, pendulum", measure_frames_pendulum},
     Measurement{"coverage frames, foucault", measure_frames_foucault},
     Measurement{"coverage frames, projectile", measure_frames_projectile},

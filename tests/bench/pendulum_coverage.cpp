@@ -22,7 +22,9 @@ struct Draws {
     std::map<std::string, std::vector<std::pair<double, double>>> all;  // value and u
 };
 
-AnalysisSettings settings_of(const PositionRun& run) {
+/// Without a ruler the arc alone tells the length.
+AnalysisSettings settings_of(const PositionRun& run, bool ruler) {
+    if (!ruler) return {{"bob_radius_m", run.swing.bob_radius}, {"bob_density_kg_m3", 0.0}};
     return {
         {"length_m", run.swing.length},
         {"length_u_m", 0.0},
@@ -31,7 +33,7 @@ AnalysisSettings settings_of(const PositionRun& run) {
 }
 
 /// Two seeds at once.
-Draws draw(const std::string& method, const PositionRun& run, int seeds) {
+Draws draw(const std::string& method, const PositionRun& run, int seeds, bool ruler = true) {
     const Trajectory path = testing::generate(run.swing);
     std::vector<std::vector<kinectlab::Measurement>> results(static_cast<std::size_t>(seeds));
     const auto every_second = [&](int first) {
@@ -39,7 +41,7 @@ Draws draw(const std::string& method, const PositionRun& run, int seeds) {
             const Trajectory noisy = with_noise(path, run, static_cast<std::uint64_t>(i + 1));
             AnalysisConditions exact;
             exact.depth_scale_u = exact.clock_u = 0.0;
-            auto outcome = analyse(method, std::span(&noisy, 1), settings_of(run), exact);
+            auto outcome = analyse(method, std::span(&noisy, 1), settings_of(run, ruler), exact);
             if (!outcome) throw std::runtime_error(to_text(outcome.error()));
             results[static_cast<std::size_t>(i)] = std::move(outcome->measurements);
         }
@@ -150,6 +152,28 @@ Figures measure_pendulum_coverage() {
     return figures;
 }
 
+Figures measure_arc_coverage() {
+    constexpr int kSeeds = 200;
+    PositionRun run = position_run(false);
+    run.swing.amplitude_deg = 20.0;
+    const Draws draws = draw("pendulum", run, kSeeds, false);
+    Figures figures;
+    add_shares("arc alone, 20°", draws, truth_of(run), kSeeds, figures);
+    double worst = 0.0;
+    for (const auto& [value, u] : draws.all.at("g"))
+        worst = std::max(worst, std::abs(value / run.swing.g - 1.0));
+    figures.push_back(
+        {"coverage arc alone, 20°, g, largest error",
+         100.0 * worst,
+         "%",
+         1.0,
+         Better::lower,
+         {},
+         {}}
+    );
+    return figures;
+}
+
 Figures measure_foucault_coverage() {
     constexpr int kSeeds = 60;  // each takes a second
     Figures figures;
@@ -181,7 +205,7 @@ Figures measure_pendulum_speed() {
     constexpr int kTimes = 10;
     const double before = thread_seconds();
     for (int i = 0; i < kTimes; ++i)
-        if (!analyse("pendulum", std::span(&path, 1), settings_of(run), {}))
+        if (!analyse("pendulum", std::span(&path, 1), settings_of(run, true), {}))
             throw std::runtime_error("the speed's own run cannot be analysed");
     return {
         {"analyse a run of 30 s from its poses",
