@@ -40,10 +40,14 @@ public:
     explicit Projectile(const ParameterMap& p)
         : CarriedApparatus(parked(p.at("ball_radius_m"))),
           radius_(p.at("ball_radius_m")),
-          gravity_(p.at("gravity")),
+          added_(1.0 + 0.5 * p.at("air_density_kg_m3") / p.at("ball_density_kg_m3")),
+          gravity_(
+              p.at("gravity") * (1.0 - p.at("air_density_kg_m3") / p.at("ball_density_kg_m3")) /
+              added_
+          ),
           drag_(
               0.375 * p.at("drag_coefficient") * p.at("air_density_kg_m3") /
-              (p.at("ball_density_kg_m3") * radius_)
+              (p.at("ball_density_kg_m3") * radius_ * added_)
           ) {
         const double elevation = p.at("elevation_deg") * std::numbers::pi / 180.0;
         launch_ =
@@ -116,8 +120,10 @@ private:
         landed_ = true;
     }
 
-    double radius_, gravity_;
-    double drag_;  ///< 1/m
+    double radius_;
+    double added_;    ///< a ball draws half the mass of the air it displaces along (Stokes 1850)
+    double gravity_;  ///< m/s², what buoyancy leaves of it
+    double drag_;     ///< 1/m
     Eigen::Vector3d launch_;
     std::optional<Flight> flight_;
     bool landed_ = false;

@@ -24,7 +24,18 @@ Figures measure_coverage();
 Figures measure_coverage_bodies();
 Figures measure_pendulum_coverage();
 Figures measure_foucault_coverage();
+Figures measure_arc_coverage();
 Figures measure_pendulum_speed();
+Figures measure_frames_pendulum();
+Figures measure_frames_foucault();
+Figures measure_frames_projectile();
+Figures measure_frames_incline();
+Figures measure_frames_spring();
+Figures measure_frames_collision();
+Figures measure_frames_robot();
+Figures measure_frames_tumbler();
+Figures measure_frames_arc();
+Figures measure_frames_speed();
 Figures measure_box_tracking();
 Figures measure_recognition();
 Figures measure_live_latency();
@@ -60,7 +71,18 @@ inline constexpr std::array kMeasurements{
     Measurement{"coverage bodies: collision, rigid body, path", measure_coverage_bodies},
     Measurement{"coverage pendulum", measure_pendulum_coverage},
     Measurement{"coverage foucault", measure_foucault_coverage},
+    Measurement{"coverage arc alone, 20°", measure_arc_coverage},
+    Measurement{"coverage frames, pendulum", measure_frames_pendulum},
+    Measurement{"coverage frames, foucault", measure_frames_foucault},
+    Measurement{"coverage frames, projectile", measure_frames_projectile},
+    Measurement{"coverage frames, incline", measure_frames_incline},
+    Measurement{"coverage frames, spring", measure_frames_spring},
+    Measurement{"coverage frames, collision", measure_frames_collision},
+    Measurement{"coverage frames, robot", measure_frames_robot},
+    Measurement{"coverage frames, tumbler", measure_frames_tumbler},
+    Measurement{"coverage frames, arc alone at 20°", measure_frames_arc},
     Measurement{"analyse a run of 30 s from its poses", measure_pendulum_speed},
+    Measurement{"analyse a run of 30 s from its frames", measure_frames_speed},
     Measurement{"box of 16x10x12 cm at 1.2 m", measure_box_tracking},
     Measurement{"recognition of a complex object", measure_recognition},
     Measurement{"live: capture to pose at a WebSocket client, frames lost", measure_live_latency},

@@ -1,20 +1,17 @@
 #include <cmath>
 #include <future>
 #include <map>
-#include <numbers>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
-#include "pipeline/analysis/swing_measurements.hpp"
 #include "tests/bench/measurements.hpp"
 #include "tests/bench/pendulum_positions.hpp"
 #include "tests/bench/swing_frames.hpp"
+#include "tests/bench/swing_truth.hpp"
 
 namespace kinectlab::bench {
 namespace {
-
-using std::numbers::pi;
 
 constexpr double kOnce = 0.68;    // within u: from 60 to 76 %
 constexpr double kTwice = 0.945;  // within 2u: from 90 to 99 %
@@ -25,41 +22,9 @@ struct Draws {
     std::map<std::string, std::vector<std::pair<double, double>>> all;  // value and u
 };
 
-/// Of an undamped orbit that is released at its widest, over the length: what energy and angular
-/// momentum leave.
-double half_width_of(const SwingParameters& p) {
-    const double l = p.n.x() * p.v.y();
-    const double energy = 0.5 * p.v.squaredNorm() + p.omega0_sq * p.n.z();
-    double square = 0.0;
-    for (int i = 0; i < 50; ++i)
-        square = l * l / (2.0 * (energy + p.omega0_sq * std::sqrt(1.0 - square)));
-    return std::copysign(std::sqrt(square), l);
-}
-
-Values truth_of(const PositionRun& run) {
-    const SwingParameters p = true_parameters(run);
-    const double duration = run.swing.seconds - 1.0 / run.swing.rate;
-    const double rms = mean_amplitude(p, duration);
-    const double omega0 = std::sqrt(p.omega0_sq);
-    const double stretch = period_factor(rms);
-    const double falls = p.damping + 4.0 / (3.0 * pi) * p.quadratic * omega0 * rms;
-    Values truth{
-        {"g", run.swing.g},
-        {"small_angle_period", 2.0 * pi / omega0},
-        {"period", 2.0 * pi / std::sqrt(p.omega0_sq / (stretch * stretch) - p.damping * p.damping)},
-        {"amplitude", turning_angle(p)},
-        {"damping", p.damping},
-        {"quadratic_damping", p.quadratic},
-        {"quality_factor", omega0 / (2.0 * falls)},
-        {"turning_rate", earth_turning(run.swing.latitude_deg)},
-        {"precession_rate", earth_turning(run.swing.latitude_deg)},
-        {"latitude", run.swing.latitude_deg},
-        {"ellipse_a", run.swing.length * std::sin(turning_angle(p))}};
-    truth["ellipse_b"] = run.swing.length * half_width_of(p);
-    return truth;
-}
-
-AnalysisSettings settings_of(const PositionRun& run) {
+/// Without a ruler the arc alone tells the length.
+AnalysisSettings settings_of(const PositionRun& run, bool ruler) {
+    if (!ruler) return {{"bob_radius_m", run.swing.bob_radius}, {"bob_density_kg_m3", 0.0}};
     return {
         {"length_m", run.swing.length},
         {"length_u_m", 0.0},
@@ -68,7 +33,7 @@ AnalysisSettings settings_of(const PositionRun& run) {
 }
 
 /// Two seeds at once.
-Draws draw(const std::string& method, const PositionRun& run, int seeds) {
+Draws draw(const std::string& method, const PositionRun& run, int seeds, bool ruler = true) {
     const Trajectory path = testing::generate(run.swing);
     std::vector<std::vector<kinectlab::Measurement>> results(static_cast<std::size_t>(seeds));
     const auto every_second = [&](int first) {
@@ -76,7 +41,7 @@ Draws draw(const std::string& method, const PositionRun& run, int seeds) {
             const Trajectory noisy = with_noise(path, run, static_cast<std::uint64_t>(i + 1));
             AnalysisConditions exact;
             exact.depth_scale_u = exact.clock_u = 0.0;
-            auto outcome = analyse(method, std::span(&noisy, 1), settings_of(run), exact);
+            auto outcome = analyse(method, std::span(&noisy, 1), settings_of(run, ruler), exact);
             if (!outcome) throw std::runtime_error(to_text(outcome.error()));
             results[static_cast<std::size_t>(i)] = std::move(outcome->measurements);
         }
@@ -187,6 +152,28 @@ Figures measure_pendulum_coverage() {
     return figures;
 }
 
+Figures measure_arc_coverage() {
+    constexpr int kSeeds = 200;
+    PositionRun run = position_run(false);
+    run.swing.amplitude_deg = 20.0;
+    const Draws draws = draw("pendulum", run, kSeeds, false);
+    Figures figures;
+    add_shares("arc alone, 20°", draws, truth_of(run), kSeeds, figures);
+    double worst = 0.0;
+    for (const auto& [value, u] : draws.all.at("g"))
+        worst = std::max(worst, std::abs(value / run.swing.g - 1.0));
+    figures.push_back(
+        {"coverage arc alone, 20°, g, largest error",
+         100.0 * worst,
+         "%",
+         1.0,
+         Better::lower,
+         {},
+         {}}
+    );
+    return figures;
+}
+
 Figures measure_foucault_coverage() {
     constexpr int kSeeds = 200;
     Figures figures;
@@ -223,7 +210,7 @@ Figures measure_pendulum_speed() {
     constexpr int kTimes = 10;
     const double before = thread_seconds();
     for (int i = 0; i < kTimes; ++i)
-        if (!analyse("pendulum", std::span(&path, 1), settings_of(run), {}))
+        if (!analyse("pendulum", std::span(&path, 1), settings_of(run, true), {}))
             throw std::runtime_error("the speed's own run cannot be analysed");
     return {
         {"analyse a run of 30 s from its poses",
