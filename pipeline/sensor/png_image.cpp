@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include <spng.h>
+#include <zlib.h>
 
 namespace kinectlab {
 namespace {
@@ -100,25 +101,6 @@ std::string describe(const spng_ihdr& header) {
 
 constexpr std::size_t kSignature = 8;
 
-/// CRC-32 as PNG has it, byte by byte from a table.
-constexpr std::array<std::uint32_t, 256> kCrcTable = [] {
-    std::array<std::uint32_t, 256> table{};
-    for (std::uint32_t n = 0; n < 256; ++n) {
-        std::uint32_t c = n;
-        for (int k = 0; k < 8; ++k)
-            c = (c & 1U) != 0 ? 0xEDB88320U ^ (c >> 1U) : c >> 1U;
-        table[n] = c;
-    }
-    return table;
-}();
-
-std::uint32_t crc_of(std::span<const std::uint8_t> bytes) {
-    std::uint32_t c = 0xFFFFFFFFU;
-    for (const std::uint8_t byte : bytes)
-        c = kCrcTable[(c ^ byte) & 0xFFU] ^ (c >> 8U);
-    return ~c;
-}
-
 std::uint32_t big_endian(std::span<const std::uint8_t> bytes) {
     std::uint32_t value = 0;
     for (const std::uint8_t byte : bytes.first(4))
@@ -140,7 +122,9 @@ Result<void> check_png(std::span<const std::uint8_t> file, const std::string& na
         const std::size_t length = big_endian(rest);
         if (length > rest.size() - 12) break;
         const auto kind_and_data = rest.subspan(4, length + 4);
-        if (crc_of(kind_and_data) != big_endian(rest.subspan(length + 8)))
+        const auto crc =
+            crc32_z(crc32_z(0, nullptr, 0), kind_and_data.data(), kind_and_data.size());
+        if (crc != big_endian(rest.subspan(length + 8)))
             return bad("is damaged: a checksum is wrong");
         if (std::memcmp(kind_and_data.data(), "IEND", 4) == 0) return {};
         rest = rest.subspan(length + 12);
