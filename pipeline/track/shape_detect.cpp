@@ -25,13 +25,14 @@ constexpr double kPlentyOfInliers = 0.7;  // no further guess is tried
 constexpr double kMaxRmsSigmas = 3.0;
 constexpr double kMaxSizeShareU = 0.15;  // a size less sure than this is no measurement
 constexpr int kFewestPoints = 60;
-constexpr int kSceneStride = 6;       // px between the points that vote in a scene
-constexpr double kNearSigmas = 16.0;  // of a scene's pixels: nearer would cut the noise itself
-constexpr double kBallAndRim = 1.2;   // radii: a ball's own pixels, those of its rim too
-constexpr int kVotings = 2;           // the second without what was found but not wanted
-constexpr double kPlainCost = 0.1;    // Tukey's loss of noise alone is 0.08 at a gate of 6σ
-constexpr double kWholeRays = 400.0;  // of a segment: its time counts
-constexpr double kMayBeHeld = 1.0;    // of a segment: a hand may lie before any part of it
+constexpr int kSceneStride = 6;        // px between the points that vote in a scene
+constexpr double kNearSigmas = 16.0;   // of a scene's pixels: nearer would cut the noise itself
+constexpr double kBallAndRim = 1.2;    // radii: a ball's own pixels, those of its rim too
+constexpr int kVotings = 2;            // the second without what was found but not wanted
+constexpr double kPlainCost = 0.14;    // of noise alone 0.08; a lid that begins there adds to it
+constexpr std::size_t kFewPixels = 4;  // every 4th tells whether to look closer
+constexpr double kWholeRays = 250.0;   // of a segment: its time counts
+constexpr double kMayBeHeld = 1.0;     // of a segment: a hand may lie before any part of it
 
 constexpr Tolerance kRough{3.0, 0.002, 0.08, 0.82};
 
@@ -135,20 +136,26 @@ std::optional<ShapeFit> SegmentShapes::in_segment(
     return found;
 }
 
+/// Mean of Tukey's loss over those of every n-th compared pixel that lie on a shape.
+double SegmentShapes::cost_on(const DisparityImage& image, const ShapeFit& fit, std::size_t n) {
+    near_.clear();
+    double loss = 0.0;
+    for (std::size_t i = 0; i < compared_.size(); i += n) {
+        const double off = off_in_sigmas(fit, image, camera_.depth, scale_, compared_[i]);
+        const double t = off / kLastGateSigmas;
+        if (!(std::abs(t) < 1.0)) continue;
+        near_.push_back(compared_[i]);
+        loss += 1.0 - std::pow(1.0 - t * t, 3);
+    }
+    return loss / static_cast<double>(std::max<std::size_t>(1, near_.size()));
+}
+
 /// Whether the faces of a box explain what lies on a round shape better than the shape does. What
 /// else is in the segment, as a lid or a hand, says nothing.
 bool SegmentShapes::is_faces(const DisparityImage& image, const ShapeFit& fit) {
     if (fit.shape.kind == ShapeKind::plane) return false;
-    near_.clear();
-    double loss = 0.0;
-    for (const auto pixel : compared_) {
-        const double t = off_in_sigmas(fit, image, camera_.depth, scale_, pixel) / kLastGateSigmas;
-        if (!(std::abs(t) < 1.0)) continue;
-        near_.push_back(pixel);
-        loss += 1.0 - std::pow(1.0 - t * t, 3);
-    }
-    const double cost = loss / static_cast<double>(std::max<std::size_t>(1, near_.size()));
-    if (cost <= kPlainCost) return false;
+    if (cost_on(image, fit, kFewPixels) <= kPlainCost) return false;
+    const double cost = cost_on(image, fit, 1);
     own_.clear();
     for (std::size_t i = 0; i < points_.size; ++i)
         if (std::abs(off_in_sigmas(fit, image, camera_.depth, scale_, points_.pixel[i])) <

@@ -59,6 +59,7 @@ private:
     [[nodiscard]] double best_cost(const DisparityImage& image, ShapeKind kind, double hopeless);
     [[nodiscard]] bool is_flat(const DisparityImage& image, const ShapeFit& ball);
     [[nodiscard]] bool is_faces(const DisparityImage& image, const ShapeFit& fit);
+    [[nodiscard]] double cost_on(const DisparityImage& image, const ShapeFit& fit, std::size_t n);
     [[nodiscard]] bool lies_on(const DisparityImage& image, const Shape& shape, std::uint32_t pixel)
         const;
     [[nodiscard]] bool is_passed_by(const DisparityImage& image, std::uint32_t pixel) const;
