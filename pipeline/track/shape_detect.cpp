@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "pipeline/track/hough.hpp"
+#include "pipeline/track/shape_borders.hpp"
 #include "pipeline/track/shape_whole.hpp"
 
 namespace kinectlab {
@@ -24,8 +25,14 @@ constexpr double kPlentyOfInliers = 0.7;  // no further guess is tried
 constexpr double kMaxRmsSigmas = 3.0;
 constexpr double kMaxSizeShareU = 0.15;  // a size less sure than this is no measurement
 constexpr int kFewestPoints = 60;
-constexpr int kSceneStride = 6;       // px between the points that vote in a scene
-constexpr double kNearSigmas = 16.0;  // of a scene's pixels: nearer would cut the noise itself
+constexpr int kSceneStride = 6;        // px between the points that vote in a scene
+constexpr double kNearSigmas = 16.0;   // of a scene's pixels: nearer would cut the noise itself
+constexpr double kBallAndRim = 1.2;    // radii: a ball's own pixels, those of its rim too
+constexpr int kVotings = 2;            // the second without what was found but not wanted
+constexpr double kPlainCost = 0.14;    // of noise alone 0.08; a lid that begins there adds to it
+constexpr std::size_t kFewPixels = 4;  // every 4th tells whether to look closer
+constexpr double kWholeRays = 250.0;   // of a segment: its time counts
+constexpr double kMayBeHeld = 1.0;     // of a segment: a hand may lie before any part of it
 
 constexpr Tolerance kRough{3.0, 0.002, 0.08, 0.82};
 
@@ -38,7 +45,7 @@ int half_window_for(std::size_t pixels) {
 }  // namespace
 
 SegmentShapes::SegmentShapes(const RgbdCamera& camera)
-    : camera_(camera), scale_(camera), fitter_(camera), rival_(camera) {}
+    : camera_(camera), scale_(camera), fitter_(camera), rival_(camera), pair_(camera) {}
 
 /// Evenly over the reading order, and so over the surface.
 void SegmentShapes::sample(const DisparityImage& image, std::span<const std::uint32_t> pixels) {
@@ -120,11 +127,55 @@ std::optional<ShapeFit> SegmentShapes::in_segment(
         guess(target, kSecondGuesses);
         found = best_guess(image, target);
     }
-    if (!found || !is_its_kind(image, *found)) return std::nullopt;
+    if (!found || !is_its_kind(image, *found) || is_faces(image, *found)) return std::nullopt;
     const bool known = target.limits.known.has_value();
     found = fitter_.fit(image, pixels, found->shape, known, FitStart::refined);
-    if (found && !is_sound(*found, target)) found.reset();
+    if (found && (!is_sound(*found, target) ||
+                  !is_whole(*found, image, camera_.depth, scale_, kWholeRays, kMayBeHeld)))
+        found.reset();
     return found;
+}
+
+/// Mean of Tukey's loss over those of every n-th compared pixel that lie on a shape.
+double SegmentShapes::cost_on(const DisparityImage& image, const ShapeFit& fit, std::size_t n) {
+    near_.clear();
+    double loss = 0.0;
+    for (std::size_t i = 0; i < compared_.size(); i += n) {
+        const double off = off_in_sigmas(fit, image, camera_.depth, scale_, compared_[i]);
+        const double t = off / kLastGateSigmas;
+        if (!(std::abs(t) < 1.0)) continue;
+        near_.push_back(compared_[i]);
+        loss += 1.0 - std::pow(1.0 - t * t, 3);
+    }
+    return loss / static_cast<double>(std::max<std::size_t>(1, near_.size()));
+}
+
+/// Whether the faces of a box explain what lies on a round shape better than the shape does. What
+/// else is in the segment, as a lid or a hand, says nothing.
+bool SegmentShapes::is_faces(const DisparityImage& image, const ShapeFit& fit) {
+    if (fit.shape.kind == ShapeKind::plane) return false;
+    if (cost_on(image, fit, kFewPixels) <= kPlainCost) return false;
+    const double cost = cost_on(image, fit, 1);
+    own_.clear();
+    for (std::size_t i = 0; i < points_.size; ++i)
+        if (std::abs(off_in_sigmas(fit, image, camera_.depth, scale_, points_.pixel[i])) <
+            kLastGateSigmas)
+            own_.copy(points_, i);
+    own_.pad();
+    for (const int faces : {2, 3})
+        if (kSimplerCost * pair_.cost(image, near_, own_, faces) + 0.01 < cost) return true;
+    return false;
+}
+
+bool SegmentShapes::lies_on(const DisparityImage& image, const Shape& shape, std::uint32_t pixel)
+    const {
+    const auto width = static_cast<std::uint32_t>(camera_.depth.width);
+    const double s = image.at(pixel);
+    const Eigen::Vector3d ray = camera_.depth.ray(pixel % width, pixel / width);
+    if (shape.kind == ShapeKind::sphere)
+        return (scale_.metres(s) * ray - shape.point).norm() < kBallAndRim * shape.size;
+    const double off = s - meet(ray, shape) / camera_.noise.inverse_depth_step;
+    return std::abs(off) < kNearSigmas * scale_.sigma_at(s);
 }
 
 void SegmentShapes::near_pixels(const DisparityImage& image, const Shape& shape) {
@@ -136,7 +187,8 @@ void SegmentShapes::near_pixels(const DisparityImage& image, const Shape& shape)
         if (s <= 0.0) continue;
         const double w = meet(camera_.depth.ray(pixel % width, pixel / width), shape);
         const double off = s - w / camera_.noise.inverse_depth_step;
-        if (std::abs(off) < kNearSigmas * scale_.sigma_at(s)) near_.push_back(pixel);  // not NaN
+        if (!(std::abs(off) < kNearSigmas * scale_.sigma_at(s))) continue;  // or NaN
+        if (!is_passed_by(image, pixel)) near_.push_back(pixel);
     }
 }
 
@@ -149,26 +201,53 @@ bool SegmentShapes::is_flat(const DisparityImage& image, const ShapeFit& ball) {
 }
 
 std::optional<ShapeFit> SegmentShapes::in_scene(
-    const DisparityImage& image, const ShapeTarget& target
+    const DisparityImage& image,
+    const ShapeTarget& target,
+    std::span<const Shape> taken,
+    const Worth& worth
 ) {
     if (target.kind != ShapeKind::plane && target.kind != ShapeKind::sphere) return std::nullopt;
+    passed_by_.assign(taken.begin(), taken.end());
+    std::optional<ShapeFit> best;
+    double most = 0.0;
+    for (int voting = 0; voting < kVotings && !best; ++voting) {
+        const std::size_t before = passed_by_.size();
+        vote(image, target);
+        unwanted_.clear();
+        for (const auto& guess : guesses_) {
+            near_pixels(image, guess.shape);
+            auto fit = fitter_.fit(image, near_, guess.shape, target.limits.known.has_value());
+            if (!fit || !is_sound(*fit, target) || !is_whole(*fit, image, camera_.depth, scale_))
+                continue;
+            if (target.kind == ShapeKind::sphere && is_flat(image, *fit)) continue;
+            const double wanted = worth(*fit);
+            if (wanted <= 0.0) unwanted_.push_back(fit->shape);
+            if (wanted <= most) continue;
+            most = wanted;
+            best = std::move(fit);
+        }
+        passed_by_.insert(passed_by_.end(), unwanted_.begin(), unwanted_.end());
+        if (passed_by_.size() == before) break;
+    }
+    return best;
+}
+
+void SegmentShapes::vote(const DisparityImage& image, const ShapeTarget& target) {
     places_.clear();
     const int width = camera_.depth.width;
     for (int v = kSceneStride / 2; v < camera_.depth.height; v += kSceneStride)
-        for (int u = kSceneStride / 2; u < width; u += kSceneStride)
-            places_.push_back(static_cast<std::uint32_t>(v * width + u));
+        for (int u = kSceneStride / 2; u < width; u += kSceneStride) {
+            const auto pixel = static_cast<std::uint32_t>(v * width + u);
+            if (!is_passed_by(image, pixel)) places_.push_back(pixel);
+        }
     find_surface_points(image, camera_, places_, 4, points_);
     guess(target, kSceneGuesses);
-    std::optional<ShapeFit> best;
-    for (const auto& guess : guesses_) {
-        near_pixels(image, guess.shape);
-        auto fit = fitter_.fit(image, near_, guess.shape, target.limits.known.has_value());
-        if (!fit || !is_sound(*fit, target) || !is_whole(*fit, image, camera_.depth, scale_))
-            continue;
-        if (target.kind == ShapeKind::sphere && is_flat(image, *fit)) continue;
-        if (!best || fit->quality.points > best->quality.points) best = std::move(fit);
-    }
-    return best;
+}
+
+bool SegmentShapes::is_passed_by(const DisparityImage& image, std::uint32_t pixel) const {
+    return std::any_of(passed_by_.begin(), passed_by_.end(), [&](const Shape& shape) {
+        return lies_on(image, shape, pixel);
+    });
 }
 
 std::optional<ShapeFit> SegmentShapes::with_known_size(

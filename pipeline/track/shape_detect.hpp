@@ -1,10 +1,12 @@
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <span>
 #include <vector>
 
 #include "pipeline/track/shape_fit.hpp"
+#include "pipeline/track/shape_pair.hpp"
 #include "pipeline/track/shape_search.hpp"
 #include "pipeline/track/shape_tracker.hpp"
 #include "pipeline/track/shapes.hpp"
@@ -28,9 +30,17 @@ public:
         const ShapeTarget& target
     );
 
-    /// In the whole picture by Hough's votes; planes and spheres only.
+    /// How much a fit is wanted; not at all at 0.
+    using Worth = std::function<double(const ShapeFit&)>;
+
+    /// In the whole picture by Hough's votes; planes and spheres only. What lies on a shape that is
+    /// taken votes for none. Of several the most wanted, which is the biggest if not said
+    /// otherwise.
     [[nodiscard]] std::optional<ShapeFit> in_scene(
-        const DisparityImage& image, const ShapeTarget& target
+        const DisparityImage& image,
+        const ShapeTarget& target,
+        std::span<const Shape> taken = {},
+        const Worth& worth = [](const ShapeFit& fit) { return fit.quality.points; }
     );
 
     /// A shape of a scene refined once more with its size known.
@@ -48,13 +58,21 @@ private:
     [[nodiscard]] bool is_its_kind(const DisparityImage& image, const ShapeFit& fit);
     [[nodiscard]] double best_cost(const DisparityImage& image, ShapeKind kind, double hopeless);
     [[nodiscard]] bool is_flat(const DisparityImage& image, const ShapeFit& ball);
+    [[nodiscard]] bool is_faces(const DisparityImage& image, const ShapeFit& fit);
+    [[nodiscard]] double cost_on(const DisparityImage& image, const ShapeFit& fit, std::size_t n);
+    [[nodiscard]] bool lies_on(const DisparityImage& image, const Shape& shape, std::uint32_t pixel)
+        const;
+    [[nodiscard]] bool is_passed_by(const DisparityImage& image, std::uint32_t pixel) const;
+    void vote(const DisparityImage& image, const ShapeTarget& target);
     void near_pixels(const DisparityImage& image, const Shape& shape);
 
     RgbdCamera camera_;
     DisparityScale scale_;
     ShapeFitter fitter_, rival_;  // the rivals' misfit must not teach the noise
-    SurfacePoints points_;
+    PlanePair pair_;
+    SurfacePoints points_, own_;
     std::vector<std::uint32_t> places_, compared_, near_;
+    std::vector<Shape> passed_by_, unwanted_;  // in a scene by votes
     std::vector<ShapeCandidate> guesses_;
 };
 

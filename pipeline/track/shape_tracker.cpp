@@ -3,25 +3,27 @@
 #include <algorithm>
 #include <cmath>
 
-#include "pipeline/core/number_text.hpp"
-#include "pipeline/track/hough.hpp"
 #include "pipeline/track/shape_detect.hpp"
+#include "pipeline/track/shape_memory.hpp"
 #include "pipeline/track/shapes.hpp"
-#include "pipeline/track/sphere.hpp"
 
 namespace kinectlab {
 namespace {
 
-constexpr TimeNs kMemory = kNsPerSecond / 2;  // a place older than this says nothing
-constexpr std::size_t kMostSegments = 8;      // looked at for one object
-constexpr double kSizeTolerance = 0.15;       // of a known size, in a scene
+constexpr std::size_t kMostSegments = 8;  // looked at for one object
+constexpr double kSizeTolerance = 0.15;   // of a known size, in a scene
+
+ShapeSighting sighting_of(const ShapeFit& fit, TimeNs t) {
+    const double variance = fit.covariance.topLeftCorner<3, 3>().trace() / 3.0;
+    return {t, fit.shape.point, variance, fit.size_u > 0.0 ? fit.shape.size : 0.0, fit.size_u};
+}
 
 class ShapeTracker : public Tracker {
 public:
     ShapeTracker(const RgbdCamera& camera, std::vector<ShapeTarget> targets)
         : camera_(camera), image_(camera), detector_(camera) {
         for (auto& target : targets)
-            objects_.push_back({std::move(target), {}, {}, 0, false, {}});
+            objects_.push_back({std::move(target), {}, Eigen::Quaterniond::Identity(), {}});
         order_.resize(objects_.size());
         if (std::any_of(objects_.begin(), objects_.end(), is_in_scene))
             scene_.emplace(ShapeDetector::create(camera).value());  // its defaults are sound
@@ -36,12 +38,13 @@ public:
         shapes_ = scene_ ? scene_->detect(frame.depth) : std::span<const SceneShape>{};
         shape_taken_.assign(shapes_.size(), false);
         segment_taken_.assign(moved.size(), false);
+        voted_.clear();
         // Those seen a moment ago choose first, so that a lost one cannot take their shape.
         for (std::size_t i = 0; i < order_.size(); ++i)
             order_[i] = i;
         std::sort(order_.begin(), order_.end(), [&](std::size_t a, std::size_t b) {
-            const bool fresh_a = is_fresh(objects_[a], frame.t),
-                       fresh_b = is_fresh(objects_[b], frame.t);
+            const bool fresh_a = objects_[a].memory.is_fresh(frame.t),
+                       fresh_b = objects_[b].memory.is_fresh(frame.t);
             return fresh_a != fresh_b ? fresh_a : a < b;
         });
         for (const std::size_t i : order_)
@@ -52,59 +55,52 @@ public:
 
     void reset() override {
         for (auto& object : objects_)
-            object.has_place = false;
+            object.memory.forget();
     }
 
 private:
     struct Object {
         ShapeTarget target;
-        Eigen::Vector3d place_cam = Eigen::Vector3d::Zero();
+        ShapeMemory memory;
         Eigen::Quaterniond q_cam_obj = Eigen::Quaterniond::Identity();
-        TimeNs seen_at = 0;
-        bool has_place = false;
         TrackSample sample;
     };
 
     static bool is_in_scene(const Object& object) { return object.target.in == LookIn::scene; }
 
-    static bool is_fresh(const Object& object, TimeNs t) {
-        return object.has_place && t - object.seen_at <= kMemory;
-    }
-
     void find(Object& object, const RgbdFrame& frame, std::span<const MovedPixels> moved) {
         object.sample = TrackSample{};
         object.sample.t = frame.t;
         object.sample.object = object.target.index;
-        const bool fresh = is_fresh(object, frame.t);
-        const auto fit = !is_in_scene(object) ? among_moved(object, fresh, moved)
-                         : object.target.search == GuessBy::hough
-                             ? detector_.in_scene(image_, object.target)
-                             : in_scene(object, fresh);
-        if (fit) take(object, *fit, frame.t, fresh);
+        const auto fit = !is_in_scene(object) ? among_moved(object, frame.t, moved)
+                         : object.target.search == GuessBy::hough ? by_votes(object, frame.t)
+                                                                  : in_scene(object, frame.t);
+        if (fit) take(object, *fit, frame.t);
     }
 
     /// Nearest to the object's last place first; biggest first where there is none.
     std::optional<ShapeFit> among_moved(
-        const Object& object, bool fresh, std::span<const MovedPixels> moved
+        const Object& object, TimeNs t, std::span<const MovedPixels> moved
     ) {
+        const bool fresh = object.memory.is_fresh(t);
         const std::size_t count = std::min(kMostSegments, moved.size());
         segments_.resize(count);
         for (std::size_t i = 0; i < count; ++i)
-            segments_[i] = {i, fresh ? distance(object, moved[i]) : static_cast<double>(i)};
+            segments_[i] = {i, fresh ? distance(object, t, moved[i]) : static_cast<double>(i)};
         std::sort(segments_.begin(), segments_.end(), [](const Ranked& a, const Ranked& b) {
             return a.rank < b.rank;
         });
         for (const Ranked& one : segments_) {
             if (segment_taken_[one.index]) continue;
             auto fit = detector_.in_segment(image_, moved[one.index], object.target);
-            if (!fit) continue;
+            if (!fit || !object.memory.may_be(sighting_of(*fit, t))) continue;
             segment_taken_[one.index] = true;
             return fit;
         }
         return std::nullopt;
     }
 
-    double distance(const Object& object, MovedPixels pixels) const {
+    double distance(const Object& object, TimeNs t, MovedPixels pixels) const {
         double nearest = 1e9;
         const auto width = static_cast<std::uint32_t>(camera_.depth.width);
         const std::size_t step = std::max<std::size_t>(1, pixels.size() / 16);
@@ -113,12 +109,29 @@ private:
             if (s <= 0.0) continue;
             const Eigen::Vector3d p_cam = camera_.depth.ray(pixels[k] % width, pixels[k] / width) /
                                           (s * camera_.noise.inverse_depth_step);
-            nearest = std::min(nearest, (p_cam - object.place_cam).norm());
+            nearest = std::min(nearest, object.memory.distance(t, p_cam));
         }
         return nearest;
     }
 
-    std::optional<ShapeFit> in_scene(const Object& object, bool fresh) {
+    /// What another object found by votes in this frame is not voted for again.
+    std::optional<ShapeFit> by_votes(const Object& object, TimeNs t) {
+        taken_.clear();
+        for (const Shape& shape : voted_)
+            if (shape.kind == object.target.kind) taken_.push_back(shape);
+        const bool fresh = object.memory.is_fresh(t);
+        auto fit = detector_.in_scene(image_, object.target, taken_, [&](const ShapeFit& one) {
+            const ShapeSighting seen = sighting_of(one, t);
+            if (!object.memory.may_be(seen)) return 0.0;
+            return fresh ? 1.0 / (1.0 + object.memory.distance(t, seen.p_cam))
+                         : static_cast<double>(one.quality.points);
+        });
+        if (fit) voted_.push_back(fit->shape);
+        return fit;
+    }
+
+    std::optional<ShapeFit> in_scene(const Object& object, TimeNs t) {
+        const bool fresh = object.memory.is_fresh(t);
         const SizeLimits& limits = object.target.limits;
         std::size_t best = shapes_.size();
         double best_rank = 0.0;
@@ -132,7 +145,8 @@ private:
                                       : shape.size >= limits.least && shape.size <= limits.most;
                 if (!fits) continue;
             }
-            const double rank = fresh ? -(shape.point - object.place_cam).norm()
+            if (!object.memory.may_be(sighting_of(shapes_[i].fit, t))) continue;
+            const double rank = fresh ? -object.memory.distance(t, shape.point)
                                       : static_cast<double>(shapes_[i].pixels.size());
             if (best < shapes_.size() && rank <= best_rank) continue;
             best = i;
@@ -144,7 +158,8 @@ private:
         return detector_.with_known_size(image_, shapes_[best], *limits.known);
     }
 
-    void take(Object& object, const ShapeFit& fit, TimeNs t, bool fresh) {
+    void take(Object& object, const ShapeFit& fit, TimeNs t) {
+        const bool fresh = object.memory.is_fresh(t);
         Eigen::Vector3d z = fit.shape.axis;
         const Eigen::Matrix3d before = object.q_cam_obj.toRotationMatrix();
         if (fit.shape.kind == ShapeKind::cylinder) {
@@ -172,10 +187,8 @@ private:
             sample.q_cam_obj = Eigen::Quaterniond(R_cam_obj);
             sample.has_orientation = true;
         }
-        object.place_cam = sample.p_cam;
         object.q_cam_obj = sample.q_cam_obj;
-        object.seen_at = t;
-        object.has_place = true;
+        object.memory.observe(sighting_of(fit, t));
     }
 
     struct Ranked {
@@ -192,36 +205,7 @@ private:
     std::span<const SceneShape> shapes_;
     std::vector<bool> shape_taken_, segment_taken_;
     std::vector<Ranked> segments_;
-};
-
-SizeLimits limits_of(const auto& settings) {
-    return {settings.radius_m, settings.min_radius_m, settings.max_radius_m};
-}
-
-struct ToTarget {
-    std::optional<ShapeTarget> operator()(const SphereSettings& s) const {
-        if (is_for_sphere_tracker(s)) return std::nullopt;
-        return ShapeTarget{0, ShapeKind::sphere, limits_of(s), s.in, s.search};
-    }
-    std::optional<ShapeTarget> operator()(const PlaneSettings& s) const {
-        if (!s.under.empty()) return std::nullopt;  // the carrying plane tracker's
-        return ShapeTarget{0, ShapeKind::plane, {}, s.in, s.search};
-    }
-    std::optional<ShapeTarget> operator()(const CylinderSettings& s) const {
-        return ShapeTarget{0, ShapeKind::cylinder, limits_of(s), s.in, GuessBy::ransac};
-    }
-    std::optional<ShapeTarget> operator()(const ConeSettings& s) const {
-        return ShapeTarget{
-            0,
-            ShapeKind::cone,
-            {s.half_angle_rad, kLeastConeAngle, kMostConeAngle},
-            s.in,
-            GuessBy::ransac};
-    }
-    template <class Other>
-    std::optional<ShapeTarget> operator()(const Other&) const {
-        return std::nullopt;
-    }
+    std::vector<Shape> voted_, taken_;  // by votes in this frame
 };
 
 }  // namespace
@@ -230,39 +214,6 @@ std::unique_ptr<Tracker> make_shape_tracker(
     const RgbdCamera& camera, std::vector<ShapeTarget> targets
 ) {
     return std::make_unique<ShapeTracker>(camera, std::move(targets));
-}
-
-std::vector<ShapeTarget> shape_targets(std::span<const ObjectSpec> objects) {
-    std::vector<ShapeTarget> targets;
-    for (std::size_t i = 0; i < objects.size(); ++i) {
-        auto target = std::visit(ToTarget{}, objects[i].settings);
-        if (!target) continue;
-        target->index = static_cast<std::uint32_t>(i);
-        targets.push_back(*target);
-    }
-    return targets;
-}
-
-Result<void> check(const PlaneSettings&, const std::string&) {
-    return {};
-}
-
-Result<void> check(const CylinderSettings& settings, const std::string& path) {
-    // The same rules as for a ball.
-    return check(
-        SphereSettings{settings.radius_m, settings.min_radius_m, settings.max_radius_m}, path
-    );
-}
-
-Result<void> check(const ConeSettings& settings, const std::string& path) {
-    const double angle = settings.half_angle_rad.value_or(0.5);
-    if (std::isfinite(angle) && angle >= kLeastConeAngle && angle <= kMostConeAngle) return {};
-    return fail(
-        ErrorCode::invalid_argument,
-        path + ".half_angle_deg",
-        "is " + number_text(angle) + " rad",
-        "give 5° to 70° between the axis and the surface"
-    );
 }
 
 }  // namespace kinectlab

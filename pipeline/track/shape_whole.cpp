@@ -9,8 +9,7 @@ namespace {
 constexpr double kMostSeenThrough = 0.2;  // of the rays that tell: cans and mugs show up to 0.1
 constexpr double kRimPx = 1.5;            // a sensor's outlines are this unsure
 constexpr double kRimOfSize = 0.1;        // and the fit's own, where much is left out
-constexpr double kMostRays = 2500.0;
-constexpr double kNearest_m = 0.05;  // to the camera: what reaches there may fill the picture
+constexpr double kNearest_m = 0.05;       // to the camera: what reaches there may fill the picture
 
 /// Rays that meet it meet the shape, well inside its outline.
 Shape slimmer(const Shape& shape, double rim_m) {
@@ -21,6 +20,11 @@ Shape slimmer(const Shape& shape, double rim_m) {
         slim.size =
             std::max(0.5 * shape.size, shape.size - std::max(rim_m, kRimOfSize * shape.size));
     return slim;
+}
+
+/// Half the width of what is seen of a cone, where it is widest.
+double across(const ShapeFit& fit) {
+    return fit.high * std::tan(fit.shape.size);
 }
 
 struct Window {
@@ -34,9 +38,8 @@ Window window_of(const ShapeFit& fit, const Pinhole& camera) {
     double reach = shape.size;
     if (shape.kind != ShapeKind::sphere) {
         middle += 0.5 * (fit.low + fit.high) * shape.axis;
-        const double across =
-            shape.kind == ShapeKind::cone ? fit.high * std::tan(shape.size) : shape.size;
-        reach = std::hypot(0.5 * (fit.high - fit.low), across);
+        const double half = shape.kind == ShapeKind::cone ? across(fit) : shape.size;
+        reach = std::hypot(0.5 * (fit.high - fit.low), half);
     }
     const double near = middle.z() - reach, far = middle.z() + reach;
     if (!(near > kNearest_m)) return {0, camera.width - 1, 0, camera.height - 1};
@@ -61,15 +64,18 @@ bool is_whole(
     const ShapeFit& fit,
     const DisparityImage& image,
     const Pinhole& camera,
-    const DisparityScale& scale
+    const DisparityScale& scale,
+    double most_rays,
+    double most_sunk
 ) {
     const Shape& shape = fit.shape;
     if (shape.kind == ShapeKind::plane) return true;
     const Shape slim = slimmer(shape, kRimPx * shape.point.norm() / camera.fx);
     const Window window = window_of(fit, camera);
     const double area = (window.right - window.left + 1.0) * (window.bottom - window.top + 1.0);
-    const int stride = 1 + static_cast<int>(std::sqrt(area / kMostRays));
-    double on = 0.0, through = 0.0;
+    const int stride = 1 + static_cast<int>(std::sqrt(area / most_rays));
+    const double depth_m = shape.kind == ShapeKind::cone ? across(fit) : shape.size;
+    double on = 0.0, through = 0.0, sunk = 0.0;
     for (int v = window.top; v <= window.bottom; v += stride)
         for (int u = window.left; u <= window.right; u += stride) {
             const double s = image.row(v)[u];
@@ -83,8 +89,9 @@ bool is_whole(
             const double off = (s - w / scale.inverse_depth_step) / scale.sigma_at(s);
             on += std::abs(off) <= kLastGateSigmas ? 1.0 : 0.0;
             through += off < -kLastGateSigmas ? 1.0 : 0.0;
+            sunk += off > kLastGateSigmas && 1.0 / w - scale.metres(s) < depth_m ? 1.0 : 0.0;
         }
-    return through <= kMostSeenThrough * (on + through);
+    return through <= kMostSeenThrough * (on + through) && sunk <= most_sunk * (on + sunk);
 }
 
 }  // namespace kinectlab

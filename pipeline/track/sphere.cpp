@@ -5,9 +5,8 @@
 #include <limits>
 #include <optional>
 
-#include "pipeline/core/number_text.hpp"
 #include "pipeline/track/assignment.hpp"
-#include "pipeline/track/predicted_point.hpp"
+#include "pipeline/track/shape_memory.hpp"
 #include "pipeline/track/sphere_candidate.hpp"
 #include "pipeline/track/sphere_fit.hpp"
 
@@ -24,6 +23,7 @@ constexpr double kMaxRadiusShareU = 0.15;  // a free radius less sure than this 
 
 constexpr TimeNs kMemory = kNsPerSecond / 2;  // a place older than this is no place to look first
 constexpr std::size_t kMostTries = 8;         // segments looked at for one object
+constexpr std::size_t kMostPassedBy = 2;      // other balls that touch it
 
 // Which of several balls of one size is which: -2 log likelihoods.
 constexpr TimeNs kNameMemory = 2 * kNsPerSecond;  // hidden for so long a ball keeps its name
@@ -43,12 +43,13 @@ public:
           fitter_(camera),
           assignment_(objects.size(), objects.size()) {
         for (auto& object : objects)
-            targets_.push_back({std::move(object), {}, false, false, {}});
+            targets_.push_back({std::move(object), {}, false, {}});
         order_.resize(targets_.size());
         for (auto* list : {&alike_, &order_})
             list->reserve(targets_.size());
         segments_.reserve(std::max(kMostTries, 2 * targets_.size()));
         claimed_.reserve(targets_.size());
+        passed_by_.reserve(kMostPassedBy);
         fits_.reserve(targets_.size());
         cost_.reserve(targets_.size() * targets_.size());
         rest_.reserve(static_cast<std::size_t>(camera.depth.width * camera.depth.height));
@@ -82,20 +83,19 @@ public:
 
     void reset() override {
         for (auto& target : targets_)
-            target.has_place = false;
+            target.memory.forget();
     }
 
 private:
     struct Target {
         TrackedObject<SphereSettings> object;
-        PredictedPoint place;
-        bool has_place = false;
+        ShapeMemory memory;
         bool done = false;  // in this frame
         TrackSample sample;
     };
 
     static bool is_fresh(const Target& target, TimeNs t, TimeNs memory = kMemory) {
-        return target.has_place && t - target.place.seen_at() <= memory;
+        return target.memory.is_fresh(t, memory);
     }
 
     /// All objects that cannot be told apart by their size are looked for together.
@@ -113,19 +113,40 @@ private:
         fits_.clear();
         for (const auto& pixels : likely_segments(frame, moved)) {
             // Balls that touch are one segment.
-            while (fits_.size() < alike_.size()) {
+            passed_by_.clear();
+            while (fits_.size() < alike_.size() && passed_by_.size() < kMostPassedBy) {
                 auto fit = detect(settings, frame, pixels);
                 if (!fit) break;
+                if (!may_be_one(*fit, frame.t)) {
+                    passed_by_.push_back(fit->sphere);
+                    continue;
+                }
                 claimed_.push_back(fit->sphere);
                 fits_.push_back(std::move(*fit));
             }
             if (fits_.size() == alike_.size()) break;
         }
+        passed_by_.clear();
         name_fits(frame.t);
     }
 
-    /// Gives each ball to the object that was most likely to be there; a single object takes its
-    /// ball wherever it is.
+    static ShapeSighting sighting_of(const SphereFit& fit, TimeNs t) {
+        const double variance = kLeastSpread * kLeastSpread + fit.covariance.trace() / 3.0;
+        const bool is_free = fit.radius_u > 0.0;
+        return {
+            t, fit.sphere.centre_cam, variance, is_free ? fit.sphere.radius : 0.0, fit.radius_u};
+    }
+
+    /// Whether a ball may be one of the objects alike; which of several is for name_fits to say.
+    [[nodiscard]] bool may_be_one(const SphereFit& fit, TimeNs t) const {
+        const ShapeSighting seen = sighting_of(fit, t);
+        if (alike_.size() == 1) return targets_[alike_.front()].memory.may_be(seen);
+        return std::any_of(alike_.begin(), alike_.end(), [&](std::size_t i) {
+            return targets_[i].memory.is_alike(seen);
+        });
+    }
+
+    /// Gives each ball to the object that was most likely to be there.
     void name_fits(TimeNs t) {
         if (alike_.size() == 1) {
             if (!fits_.empty()) take(targets_[alike_.front()], fits_.front(), t);
@@ -142,23 +163,21 @@ private:
     }
 
     static double cost_of(const Target& target, const SphereFit& fit, TimeNs t) {
+        if (!target.memory.is_alike(sighting_of(fit, t))) return kNoBall;
         if (!is_fresh(target, t, kNameMemory)) return kAnywhere;
+        const PredictedPoint& place = target.memory.place();
         const double surprise = kSurpriseRadii * fit.sphere.radius;
         const double variance =
-            std::min(target.place.variance_at(t) + surprise * surprise, kMostSpread * kMostSpread);
-        const double far = (fit.sphere.centre_cam - target.place.at(t)).squaredNorm() / variance;
+            std::min(place.variance_at(t) + surprise * surprise, kMostSpread * kMostSpread);
+        const double far = (fit.sphere.centre_cam - place.at(t)).squaredNorm() / variance;
         if (far > kGate) return kNoBall;
         return far + 3.0 * std::log(1.0 + variance / (kUnitSpread * kUnitSpread));
     }
 
-    static void take(Target& target, const SphereFit& fit, TimeNs t) {
-        const double variance = kLeastSpread * kLeastSpread + fit.covariance.trace() / 3.0;
-        if (is_fresh(target, t, kNameMemory)) {
-            target.place.observe(t, fit.sphere.centre_cam, variance);
-        } else {
-            target.place = PredictedPoint(t, fit.sphere.centre_cam, variance);
-        }
-        target.has_place = true;
+    void take(Target& target, const SphereFit& fit, TimeNs t) const {
+        target.memory.observe(
+            sighting_of(fit, t), alike_.size() == 1 ? ShapeMemory::kDuration : kNameMemory
+        );
         target.sample.status = TrackStatus::tracked;
         target.sample.p_cam = fit.sphere.centre_cam;
         target.sample.covariance.topLeftCorner<3, 3>() = fit.covariance;
@@ -193,7 +212,7 @@ private:
         const std::size_t step = std::max<std::size_t>(1, pixels.size() / 16);
         for (const std::size_t i : alike_) {
             if (!is_fresh(targets_[i], frame.t)) continue;
-            const Eigen::Vector3d expected = targets_[i].place.at(frame.t);
+            const Eigen::Vector3d expected = targets_[i].memory.place().at(frame.t);
             for (std::size_t k = 0; k < pixels.size(); k += step)
                 nearest = std::min(nearest, (point(frame, pixels[k]) - expected).norm());
         }
@@ -220,14 +239,16 @@ private:
 
     /// The pixels that no other object's sphere explains already.
     MovedPixels without_claimed(const RgbdFrame& frame, MovedPixels pixels) {
-        if (claimed_.empty()) return pixels;
+        if (claimed_.empty() && passed_by_.empty()) return pixels;
         rest_.clear();
         for (const auto pixel : pixels) {
             const Eigen::Vector3d p_cam = point(frame, pixel);
-            const bool taken = std::any_of(claimed_.begin(), claimed_.end(), [&](const Sphere& s) {
+            const auto is_on = [&](const Sphere& s) {
                 return (p_cam - s.centre_cam).norm() < 1.2 * s.radius;
-            });
-            if (!taken) rest_.push_back(pixel);
+            };
+            if (std::none_of(claimed_.begin(), claimed_.end(), is_on) &&
+                std::none_of(passed_by_.begin(), passed_by_.end(), is_on))
+                rest_.push_back(pixel);
         }
         return rest_;
     }
@@ -252,35 +273,12 @@ private:
     std::vector<double> cost_;
     Assignment assignment_;
     std::vector<Sphere> claimed_;
+    std::vector<Sphere> passed_by_;  // of a segment: balls that are none of the objects alike
     std::vector<MovedPixels> segments_;
     std::vector<std::uint32_t> rest_;
 };
 
-Result<void> check_radius(const std::string& field, double radius_m) {
-    if (std::isfinite(radius_m) && radius_m > 0.0 && radius_m <= 2.0) return {};
-    return fail(
-        ErrorCode::invalid_argument,
-        field,
-        "is " + number_text(radius_m),
-        "give a radius in metres above 0 and up to 2, e.g. 0.05"
-    );
-}
-
 }  // namespace
-
-Result<void> check(const SphereSettings& settings, const std::string& path) {
-    if (settings.radius_m) return check_radius(path + ".radius_m", *settings.radius_m);
-    if (auto ok = check_radius(path + ".min_radius_m", settings.min_radius_m); !ok) return ok;
-    if (auto ok = check_radius(path + ".max_radius_m", settings.max_radius_m); !ok) return ok;
-    if (settings.min_radius_m < settings.max_radius_m) return {};
-    return fail(
-        ErrorCode::invalid_argument,
-        path + ".min_radius_m",
-        "is " + number_text(settings.min_radius_m) + ", not below max_radius_m " +
-            number_text(settings.max_radius_m),
-        "give a range, or radius_m alone"
-    );
-}
 
 std::unique_ptr<Tracker> make_sphere_tracker(
     const RgbdCamera& camera, TrackedObjects<SphereSettings> objects
