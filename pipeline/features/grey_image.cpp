@@ -11,6 +11,7 @@ namespace {
 
 constexpr float kReach_sigmas = 3.5F;
 constexpr int kMostReach = 24;
+constexpr int kTile = 256;  // columns; as many rows of them as a blur reads fit the nearest cache
 
 KINECTLAB_HOT_LOOP void grey_row(
     const std::uint8_t* __restrict rgb, int count, float* __restrict out
@@ -21,7 +22,14 @@ KINECTLAB_HOT_LOOP void grey_row(
                  0.114F * static_cast<float>(rgb[3 * i + 2]);
 }
 
-/// out = k0·middle + Σ k·(one side + other side), over whole rows or shifted ones.
+/// Eight pixels at once, wherever they lie.
+typedef float Lanes __attribute__((vector_size(32), aligned(4), may_alias));
+constexpr int kLanes = 8;
+constexpr int kTogether = 4;  // sums that stay in registers
+constexpr int kBlock = kTogether * kLanes;
+
+/// out = k0·middle + Σ k·(one side + other side), over whole rows or shifted ones. The sums of a
+/// block stay in registers: written out for each weight, storing them took most of the time.
 KINECTLAB_HOT_LOOP void weigh(
     const float* const* __restrict before,
     const float* const* __restrict after,
@@ -31,18 +39,31 @@ KINECTLAB_HOT_LOOP void weigh(
     int count,
     float* __restrict out
 ) {
-    constexpr int kBlock = 64;  // stays in registers and the nearest cache
+    if (count < kBlock) {
+        for (int i = 0; i < count; ++i) {
+            float sum = kernel[0] * middle[i];
+            for (int k = 1; k <= reach; ++k)
+                sum += kernel[k] * (before[k][i] + after[k][i]);
+            out[i] = sum;
+        }
+        return;
+    }
     for (int start = 0; start < count; start += kBlock) {
-        const int end = std::min(count, start + kBlock);
-        for (int i = start; i < end; ++i)
-            out[i] = kernel[0] * middle[i];
+        const int at = std::min(start, count - kBlock);  // the last block repeats some pixels
+        const Lanes* m = reinterpret_cast<const Lanes*>(middle + at);
+        Lanes s0 = kernel[0] * m[0], s1 = kernel[0] * m[1], s2 = kernel[0] * m[2],
+              s3 = kernel[0] * m[3];
         for (int k = 1; k <= reach; ++k) {
             const float weight = kernel[k];
-            const float* __restrict a = before[k];
-            const float* __restrict b = after[k];
-            for (int i = start; i < end; ++i)
-                out[i] += weight * (a[i] + b[i]);
+            const Lanes* a = reinterpret_cast<const Lanes*>(before[k] + at);
+            const Lanes* b = reinterpret_cast<const Lanes*>(after[k] + at);
+            s0 += weight * (a[0] + b[0]);
+            s1 += weight * (a[1] + b[1]);
+            s2 += weight * (a[2] + b[2]);
+            s3 += weight * (a[3] + b[3]);
         }
+        Lanes* sums = reinterpret_cast<Lanes*>(out + at);
+        sums[0] = s0, sums[1] = s1, sums[2] = s2, sums[3] = s3;
     }
 }
 
@@ -82,24 +103,46 @@ void blur(const GreyImage& from, float sigma, GreyImage& to, std::vector<float>&
         weight /= total;
 
     to.resize(from.width, from.height);
-    scratch.resize(static_cast<std::size_t>(from.width + 2 * kMostReach));
-    float* padded = scratch.data() + kMostReach;
+    scratch.resize(kTile + 2 * kMostReach);
+    float* padded = scratch.data() + kMostReach;  // a row of the tile, blurred downwards
     std::array<const float*, kMostReach + 1> before{}, after{};
-    for (int v = 0; v < from.height; ++v) {
-        for (int k = 0; k <= reach; ++k) {
-            const auto i = static_cast<std::size_t>(k);
-            before[i] = from.row(std::max(0, v - k));
-            after[i] = from.row(std::min(from.height - 1, v + k));
+    for (int left = 0; left < from.width; left += kTile) {
+        const int right = std::min(from.width, left + kTile);
+        const int first = std::max(0, left - reach), end = std::min(from.width, right + reach);
+        for (int v = 0; v < from.height; ++v) {
+            for (int k = 0; k <= reach; ++k) {
+                const auto i = static_cast<std::size_t>(k);
+                before[i] = from.row(std::max(0, v - k)) + first;
+                after[i] = from.row(std::min(from.height - 1, v + k)) + first;
+            }
+            weigh(
+                before.data(),
+                after.data(),
+                from.row(v) + first,
+                kernel.data(),
+                reach,
+                end - first,
+                padded + (first - left)
+            );
+            std::fill(padded - reach, padded + (first - left), padded[first - left]);
+            std::fill(
+                padded + (end - left), padded + (right - left) + reach, padded[end - left - 1]
+            );
+            for (int k = 0; k <= reach; ++k) {
+                const auto i = static_cast<std::size_t>(k);
+                before[i] = padded - k;
+                after[i] = padded + k;
+            }
+            weigh(
+                before.data(),
+                after.data(),
+                padded,
+                kernel.data(),
+                reach,
+                right - left,
+                to.row(v) + left
+            );
         }
-        weigh(before.data(), after.data(), from.row(v), kernel.data(), reach, from.width, padded);
-        std::fill(padded - reach, padded, padded[0]);
-        std::fill(padded + from.width, padded + from.width + reach, padded[from.width - 1]);
-        for (int k = 0; k <= reach; ++k) {
-            const auto i = static_cast<std::size_t>(k);
-            before[i] = padded - k;
-            after[i] = padded + k;
-        }
-        weigh(before.data(), after.data(), padded, kernel.data(), reach, from.width, to.row(v));
     }
 }
 

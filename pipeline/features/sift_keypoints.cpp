@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 
 #include <Eigen/LU>
 
@@ -21,7 +22,8 @@ KINECTLAB_HOT_LOOP void subtract(
         out[i] = upper[i] - lower[i];
 }
 
-/// 1 where a pixel is beyond `least` and beats its 8 neighbours in its own layer.
+/// 1 where a pixel is beyond `least` and beats its 8 neighbours in its own layer. Most of a picture
+/// is too flat, which is asked for a block at once.
 KINECTLAB_HOT_LOOP void mark_peaks(
     const float* __restrict above,
     const float* __restrict own,
@@ -31,20 +33,37 @@ KINECTLAB_HOT_LOOP void mark_peaks(
     float least,
     std::uint8_t* __restrict peaks
 ) {
-    for (int i = from; i < to; ++i) {
-        const float high = std::max(
-            std::max(std::max(above[i - 1], above[i]), std::max(above[i + 1], own[i - 1])),
-            std::max(std::max(own[i + 1], below[i - 1]), std::max(below[i], below[i + 1]))
-        );
-        const float low = std::min(
-            std::min(std::min(above[i - 1], above[i]), std::min(above[i + 1], own[i - 1])),
-            std::min(std::min(own[i + 1], below[i - 1]), std::min(below[i], below[i + 1]))
-        );
-        const float here = own[i];
-        const int peak = static_cast<int>(here > least) & static_cast<int>(here > high);
-        const int pit = static_cast<int>(here < -least) & static_cast<int>(here < low);
-        peaks[i] = static_cast<std::uint8_t>(peak | pit);
+    constexpr int kBlock = 64;
+    for (int start = from; start < to; start += kBlock) {
+        const int end = std::min(to, start + kBlock);
+        int beyond = 0;
+        for (int i = start; i < end; ++i)
+            beyond |= static_cast<int>(own[i] > least) | static_cast<int>(own[i] < -least);
+        if (beyond == 0) {
+            std::fill(peaks + start, peaks + end, std::uint8_t{0});
+            continue;
+        }
+        for (int i = start; i < end; ++i) {
+            const float high = std::max(
+                std::max(std::max(above[i - 1], above[i]), std::max(above[i + 1], own[i - 1])),
+                std::max(std::max(own[i + 1], below[i - 1]), std::max(below[i], below[i + 1]))
+            );
+            const float low = std::min(
+                std::min(std::min(above[i - 1], above[i]), std::min(above[i + 1], own[i - 1])),
+                std::min(std::min(own[i + 1], below[i - 1]), std::min(below[i], below[i + 1]))
+            );
+            const float here = own[i];
+            const int peak = static_cast<int>(here > least) & static_cast<int>(here > high);
+            const int pit = static_cast<int>(here < -least) & static_cast<int>(here < low);
+            peaks[i] = static_cast<std::uint8_t>(peak | pit);
+        }
     }
+}
+
+/// The next that is marked; `end` if none is.
+const std::uint8_t* next_peak(const std::uint8_t* from, const std::uint8_t* end) {
+    const void* found = std::memchr(from, 1, static_cast<std::size_t>(end - from));
+    return found != nullptr ? static_cast<const std::uint8_t*>(found) : end;
 }
 
 /// Differences of Gaussians around a pixel, straight from the blurred layers.
@@ -155,10 +174,10 @@ void Sift::find_extrema(int octave) {
                 least,
                 peaks_.data()
             );
-            const auto end = peaks_.begin() + (width - kBorder);
-            for (auto at = std::find(peaks_.begin() + kBorder, end, 1); at != end;
-                 at = std::find(at + 1, end, 1)) {
-                const auto u = static_cast<int>(at - peaks_.begin());
+            const std::uint8_t* end = peaks_.data() + (width - kBorder);
+            for (const std::uint8_t* at = next_peak(peaks_.data() + kBorder, end); at != end;
+                 at = next_peak(at + 1, end)) {
+                const auto u = static_cast<int>(at - peaks_.data());
                 if (beats_other_scales({&layer(octave, 0), i, u, v})) refine(octave, i, u, v);
             }
         }

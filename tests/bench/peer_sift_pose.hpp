@@ -16,7 +16,8 @@ namespace kinectlab::bench {
 /// OpenCV's SIFT with its own values over the whole picture, one thread.
 [[nodiscard]] std::vector<Keypoint2d> opencv_sift(const RgbdCamera& camera, const RgbdFrame& frame);
 
-/// What anybody would put together from OpenCV: SIFT over the whole picture, brute-force matching
+/// What anybody would put together from OpenCV: SIFT around the last place, as wide as the
+/// project's tracker looks, or over the whole picture where there is none; brute-force matching
 /// with Lowe's ratio, solvePnPRansac of the object's points (known in three dimensions from the
 /// first frame) against where they are seen now. One thread.
 class OpenCvSiftPose {
@@ -31,6 +32,9 @@ public:
 
     /// How the object moved since the first frame, depth camera's frame; nothing if not found.
     [[nodiscard]] std::optional<Eigen::Isometry3d> motion(const RgbdFrame& frame);
+
+    /// The next frame is looked at as a whole.
+    void forget_place();
 
 private:
     struct State;
