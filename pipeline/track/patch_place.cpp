@@ -11,6 +11,7 @@ namespace kinectlab {
 namespace {
 
 constexpr double kCommonMode = 0.15;      // of the half vote: what light and print leave open
+constexpr double kWanderCounts = 4.0;     // as many comparisons as the expectation is worth
 constexpr double kDifferentLength = 1.5;  // ratio of the axes' variances: longer beyond doubt
 constexpr double kHiddenShare = 0.1;      // less missing than this is noise
 constexpr double kUsualMemory = 0.05;     // of the usual area is renewed in each frame
@@ -30,6 +31,7 @@ void PatchPlace::lose() {
 void PatchPlace::forget() {
     lose();
     memory_ = {};
+    wander_.setZero();
     usual_area_m2_ = 0.0;
 }
 
@@ -96,7 +98,8 @@ PatchPlace::Place PatchPlace::measure(
     place.covariance =
         readings_error(place.centroid_cam, scale.sigma_at(s) / s, squares, mass) +
         outline_.covariance(memory_, before_, now_, place.centroid_cam, mass) +
-        common * common.transpose();
+        common * common.transpose() +
+        kWanderCounts / (kWanderCounts + memory_.comparisons) * wander_ * wander_.transpose();
 
     usual_area_m2_ = usual_area_m2_ > 0.0
                          ? usual_area_m2_ + kUsualMemory * (place.area_m2 - usual_area_m2_)

@@ -17,6 +17,7 @@ namespace kinectlab {
 ///   - the readings' noise, neighbours' shared part reckoned with,
 ///   - the outline (OutlineError),
 ///   - the common mode: what the centroid moves by if all votes count for more or for less,
+///   - how far a new patch is expected to wander, until its outline was compared for a while,
 ///   - what is hidden, if less is seen than usual.
 class PatchPlace {
 public:
@@ -42,6 +43,9 @@ public:
         double half_vote
     );
 
+    /// For a patch that was just learned: light that changes may move its place so far.
+    void expect_wander(const Eigen::Vector3d& by) { wander_ = by; }
+
     /// The patch was out of sight: nothing to compare the next outline with.
     void lose();
     /// Another patch.
@@ -62,6 +66,7 @@ private:
     RgbdCamera camera_;
     OutlineError outline_;
     OutlineError::Memory memory_;
+    Eigen::Vector3d wander_ = Eigen::Vector3d::Zero();
     std::vector<OutlineError::Pixel> now_, before_;
     double usual_area_m2_ = 0.0;
 };
