@@ -4,16 +4,18 @@
 
 #include "pipeline/core/number_text.hpp"
 #include "pipeline/track/identities.hpp"
+#include "pipeline/track/thing_outlines.hpp"
 
 namespace kinectlab {
 namespace {
 
 class ChangeTracker : public Tracker {
 public:
-    ChangeTracker(const RgbdCamera& camera, TrackedObjects<ChangeTrackSettings> objects)
-        : lens_(camera.depth) {
+    ChangeTracker(const RgbdCamera& camera, TrackedObjects<ChangeTrackSettings> objects) {
         for (auto& object : objects)
-            followed_.push_back({object.index, Identities(camera, object.settings.memory_s)});
+            followed_.push_back(
+                {object.index, Identities(camera, object.settings.memory_s), ThingOutlines(camera)}
+            );
     }
 
     void track(
@@ -21,23 +23,33 @@ public:
         std::span<const MovedPixels> moved,
         std::vector<TrackSample>& samples
     ) override {
-        for (auto& [object, identities] : followed_)
-            for (const Thing& thing : identities.follow(frame, moved))
-                samples.push_back(sample_of(thing, frame.t, object));
+        for (auto& [object, identities, outlines] : followed_) {
+            const auto things = identities.follow(frame, moved);
+            outlines.next_frame();
+            for (std::size_t i = 0; i < things.size(); ++i) {
+                TrackSample& sample = samples.emplace_back(sample_of(things[i], frame.t, object));
+                if (things[i].seen)
+                    sample.covariance.topLeftCorner<3, 3>() =
+                        outlines.covariance(identities, i, things[i], frame, moved);
+            }
+        }
     }
 
     void reset() override {
-        for (auto& [object, identities] : followed_)
-            identities.reset();
+        for (auto& followed : followed_) {
+            followed.identities.reset();
+            followed.outlines.reset();
+        }
     }
 
 private:
     struct Followed {
         std::uint32_t object;
         Identities identities;
+        ThingOutlines outlines;
     };
 
-    [[nodiscard]] TrackSample sample_of(const Thing& thing, TimeNs t, std::uint32_t object) const {
+    static TrackSample sample_of(const Thing& thing, TimeNs t, std::uint32_t object) {
         TrackSample sample;
         sample.t = t;
         sample.object = object;
@@ -45,14 +57,10 @@ private:
         if (!thing.seen) return sample;
         sample.status = TrackStatus::tracked;
         sample.p_cam = thing.now.centroid();
-        auto covariance = sample.covariance.topLeftCorner<3, 3>();
-        covariance = thing.now.centroid_covariance(lens_);
-        covariance.diagonal().array() += thing.hidden_u * thing.hidden_u;
         sample.quality = {thing.now.points, 1.0, 0.0};
         return sample;
     }
 
-    Pinhole lens_;
     std::vector<Followed> followed_;
 };
 

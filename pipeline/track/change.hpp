@@ -6,8 +6,8 @@ namespace kinectlab {
 
 /// Method "change": whatever moved, as separate things that keep their identity (Identities). One
 /// sample for each thing known, at the centroid of its visible surface: tracked, or lost while
-/// nothing of it is seen. The covariance is that of the centroid under the sensor's noise, an
-/// outline that is known to half a pixel, and what another thing hides.
+/// nothing of it is seen. The covariance is that of the centroid under the sensor's noise, what the
+/// outline does from frame to frame (OutlineError), and what another thing hides.
 [[nodiscard]] std::unique_ptr<Tracker> make_change_tracker(
     const RgbdCamera& camera, TrackedObjects<ChangeTrackSettings> objects
 );

@@ -25,6 +25,7 @@ constexpr double kFastest_m_s = 4.0;        // what moves faster is another thin
 constexpr double kMostAround = 0.25;        // of the surroundings may have the thing's colours
 constexpr double kFewestInBox = 0.1;        // of a box must be the thing
 constexpr double kHalfVoteOfBounds = 0.45;  // given bounds: nearly all inside passes, little else
+constexpr double kLightShare = 0.15;        // of the vote on an outline: what wandering light moves
 constexpr double kNearest_m = 0.3;          // nearer than any sensor of the family reads
 
 class ColourTracker : public Tracker {
@@ -172,7 +173,25 @@ private:
         target.place_cam = glance.centroid_cam;
         target.seen_at = frame.t;
         target.area = sight_.around(best);
+        target.patch.expect_wander(wander(target, frame, at_place));
         return {};
+    }
+
+    /// How far the place moves if the light lets more or fewer of its pixels pass: pieces of a
+    /// print join it or fall off.
+    Eigen::Vector3d wander(const Target& target, const RgbdFrame& frame, MovedPixels at_place) {
+        Eigen::Vector3d farthest = Eigen::Vector3d::Zero();
+        for (const double factor : {1.0 - kLightShare, 1.0 + kLightShare}) {
+            const auto all = sight_.patches(
+                *target.table, factor * target.half_vote, sight_.whole_picture(), kFewestPixels
+            );
+            const MovedPixels piece = most_of(all, at_place);
+            if (piece.empty()) continue;
+            const Eigen::Vector3d off =
+                target.patch.glance(frame, piece).centroid_cam - target.place_cam;
+            if (off.norm() > farthest.norm()) farthest = off;
+        }
+        return farthest;
     }
 
     std::span<const MovedPixels> patches(const Target& target, const PixelArea& area) {

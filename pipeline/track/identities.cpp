@@ -66,6 +66,13 @@ std::span<const Thing> Identities::follow(
     return things_;
 }
 
+std::optional<std::size_t> Identities::owner_of(std::size_t segment) const {
+    if (segment >= std::min(parts_.size(), kMostThings)) return std::nullopt;
+    const Part& part = parts_[segment];
+    if (part.owner == Assignment::kNone || part.shared_u > 0.0) return std::nullopt;
+    return static_cast<std::size_t>(part.owner);
+}
+
 void Identities::forget(TimeNs t) {
     const TimeNs kept = std::max(memory_, kFramesRemembered * (t - last_));
     std::erase_if(things_, [&](const Thing& thing) { return t - thing.place.seen_at() > kept; });

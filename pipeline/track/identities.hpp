@@ -44,6 +44,10 @@ public:
         const RgbdFrame& frame, std::span<const MovedPixels> moved
     );
 
+    /// Whose a segment of the last call is as a whole: its place in what that returned; none where
+    /// things share it or nobody has it.
+    [[nodiscard]] std::optional<std::size_t> owner_of(std::size_t segment) const;
+
     /// Forgets all things; the next is number 1 again.
     void reset();
 

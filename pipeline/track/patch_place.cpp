@@ -1,7 +1,6 @@
 #include "pipeline/track/patch_place.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include <Eigen/Eigenvalues>
@@ -11,21 +10,11 @@
 namespace kinectlab {
 namespace {
 
-constexpr double kSharedNoise = 10.0;   // pixels that err together in a Kinect's correlation window
-constexpr double kEdge_px = 0.5;        // an outline's pixel is in its place or not
-constexpr double kEdgeShared_px = 7.0;  // so far along the outline they err together
-constexpr int kSectors = 16;
-constexpr double kExpectedCounts = 4.0;   // as many comparisons as the expectation is worth
-constexpr double kMemory = 30.0;          // comparisons
 constexpr double kCommonMode = 0.15;      // of the half vote: what light and print leave open
+constexpr double kWanderCounts = 4.0;     // as many comparisons as the expectation is worth
 constexpr double kDifferentLength = 1.5;  // ratio of the axes' variances: longer beyond doubt
 constexpr double kHiddenShare = 0.1;      // less missing than this is noise
 constexpr double kUsualMemory = 0.05;     // of the usual area is renewed in each frame
-
-int sector_of(const Eigen::Vector3f& off) {
-    const double turn = std::atan2(off.y(), off.x()) / (2.0 * 3.14159265358979) + 0.5;
-    return std::min(kSectors - 1, static_cast<int>(kSectors * turn));
-}
 
 double weight_of(double vote, double half_vote) {
     return std::clamp(vote / half_vote - 0.5, 0.0, 1.0);
@@ -33,21 +22,16 @@ double weight_of(double vote, double half_vote) {
 
 }  // namespace
 
-PatchPlace::PatchPlace(const RgbdCamera& camera)
-    : camera_(camera),
-      weight_now_(static_cast<std::size_t>(camera.depth.width * camera.depth.height)),
-      weight_before_(weight_now_.size()) {}
+PatchPlace::PatchPlace(const RgbdCamera& camera) : camera_(camera), outline_(camera.depth) {}
 
 void PatchPlace::lose() {
-    for (const auto& one : before_)
-        weight_before_[one.pixel] = 0.0F;
     before_.clear();
 }
 
 void PatchPlace::forget() {
     lose();
-    measured_.setZero();
-    comparisons_ = 0.0;
+    memory_ = {};
+    wander_.setZero();
     usual_area_m2_ = 0.0;
 }
 
@@ -102,8 +86,7 @@ PatchPlace::Place PatchPlace::measure(
         spread += weight * off * off.transpose();
         squares += weight * weight;
         place.area_m2 += weight * p.z() * p.z() / (camera_.depth.fx * camera_.depth.fy);
-        now_.push_back({pixel, static_cast<float>(weight), off.cast<float>()});
-        weight_now_[pixel] = static_cast<float>(weight);
+        now_.push_back({pixel, static_cast<float>(weight), static_cast<float>(p.z())});
     }
     place.points = static_cast<int>(now_.size());
     spread /= std::max(mass, 1e-9);
@@ -111,14 +94,12 @@ PatchPlace::Place PatchPlace::measure(
     const DisparityScale scale(camera_);
     const double z = place.centroid_cam.z();
     const double s = scale.steps_at(z);
-    const Eigen::Vector3d along_ray = place.centroid_cam * (scale.sigma_at(s) / s);
     const Eigen::Vector3d common = 0.5 * (more - less);
-    const Eigen::Matrix3d expected = expected_outline(mass);
-    compare_outlines(place.centroid_cam, mass);
     place.covariance =
-        kSharedNoise * squares / (mass * mass) * along_ray * along_ray.transpose() +
-        (kExpectedCounts * expected + comparisons_ * measured_) / (kExpectedCounts + comparisons_) +
-        common * common.transpose();
+        readings_error(place.centroid_cam, scale.sigma_at(s) / s, squares, mass) +
+        outline_.covariance(memory_, before_, now_, place.centroid_cam, mass) +
+        common * common.transpose() +
+        kWanderCounts / (kWanderCounts + memory_.comparisons) * wander_ * wander_.transpose();
 
     usual_area_m2_ = usual_area_m2_ > 0.0
                          ? usual_area_m2_ + kUsualMemory * (place.area_m2 - usual_area_m2_)
@@ -127,66 +108,8 @@ PatchPlace::Place PatchPlace::measure(
     if (missing > kHiddenShare) place.covariance += missing * missing * spread;
     keep_axes(place, spread);
 
-    lose();
     std::swap(now_, before_);
-    std::swap(weight_now_, weight_before_);
-    centroid_before_ = place.centroid_cam;
     return place;
-}
-
-Eigen::Matrix3d PatchPlace::expected_outline(double mass) {
-    const int width = camera_.depth.width;
-    const auto size = static_cast<std::int64_t>(weight_now_.size());
-    const auto inside = [&](std::int64_t pixel) {
-        return pixel >= 0 && pixel < size && weight_now_[static_cast<std::size_t>(pixel)] >= 0.5F;
-    };
-    Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
-    for (const auto& one : now_) {
-        const std::int64_t at = one.pixel;
-        if (!inside(at) ||
-            (inside(at - 1) && inside(at + 1) && inside(at - width) && inside(at + width)))
-            continue;
-        const Eigen::Vector3d off = one.off.cast<double>();
-        sum += off * off.transpose();
-    }
-    return kEdge_px * kEdge_px * kEdgeShared_px / (mass * mass) * sum;
-}
-
-void PatchPlace::compare_outlines(const Eigen::Vector3d& centroid, double mass) {
-    if (before_.empty()) return;
-    const Eigen::Vector2d moved =
-        camera_.depth.project(centroid) - camera_.depth.project(centroid_before_);
-    const auto du = static_cast<int>(std::lround(moved.x()));
-    const auto dv = static_cast<int>(std::lround(moved.y()));
-    const int width = camera_.depth.width, height = camera_.depth.height;
-    const auto shifted = [&](std::uint32_t pixel, int by_u, int by_v) -> std::int64_t {
-        const int u = static_cast<int>(pixel) % width + by_u;
-        const int v = static_cast<int>(pixel) / width + by_v;
-        return u < 0 || v < 0 || u >= width || v >= height ? -1 : std::int64_t{v} * width + u;
-    };
-    std::array<Eigen::Vector3d, kSectors> change;
-    change.fill(Eigen::Vector3d::Zero());
-    const auto add = [&](const Eigen::Vector3f& off, float weight) {
-        change[static_cast<std::size_t>(sector_of(off))] += (weight * off).cast<double>();
-    };
-    for (const auto& one : now_) {
-        const auto then = shifted(one.pixel, -du, -dv);
-        const float weight =
-            one.weight - (then < 0 ? 0.0F : weight_before_[static_cast<std::size_t>(then)]);
-        if (weight != 0.0F) add(one.off, weight);
-    }
-    for (const auto& one : before_) {
-        const auto here = shifted(one.pixel, du, dv);
-        if (here < 0 || weight_now_[static_cast<std::size_t>(here)] == 0.0F)
-            add(one.off, -one.weight);
-    }
-    // The difference of two frames has twice the variance of one.
-    Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
-    for (const auto& sector : change)
-        sum += sector * sector.transpose();
-    sum /= 2.0 * mass * mass;
-    comparisons_ = std::min(kMemory, comparisons_ + 1.0);
-    measured_ += (sum - measured_) / comparisons_;
 }
 
 void PatchPlace::keep_axes(Place& place, const Eigen::Matrix3d& spread) const {

@@ -8,16 +8,16 @@
 
 #include "pipeline/core/camera.hpp"
 #include "pipeline/core/frame.hpp"
+#include "pipeline/track/outline_error.hpp"
 
 namespace kinectlab {
 
 /// Where a patch of visible surface is, from pixels that belong to it more or less, and how sure
 /// that is. Holds one patch from frame to frame; the covariance is the sum of
 ///   - the readings' noise, neighbours' shared part reckoned with,
-///   - the outline: each of 16 sectors about the centroid moves for itself. How much is measured
-///     by what its weights change from frame to frame once the patch's own motion is taken out;
-///     half a pixel over a depth sensor's correlation window is expected before anything is seen,
+///   - the outline (OutlineError),
 ///   - the common mode: what the centroid moves by if all votes count for more or for less,
+///   - how far a new patch is expected to wander, until its outline was compared for a while,
 ///   - what is hidden, if less is seen than usual.
 class PatchPlace {
 public:
@@ -43,6 +43,9 @@ public:
         double half_vote
     );
 
+    /// For a patch that was just learned: light that changes may move its place so far.
+    void expect_wander(const Eigen::Vector3d& by) { wander_ = by; }
+
     /// The patch was out of sight: nothing to compare the next outline with.
     void lose();
     /// Another patch.
@@ -57,22 +60,14 @@ public:
         const;
 
 private:
-    struct Weighted {
-        std::uint32_t pixel = 0;
-        float weight = 0.0F;
-        Eigen::Vector3f off = Eigen::Vector3f::Zero();  ///< from the centroid, m
-    };
     [[nodiscard]] Eigen::Vector3d point(const RgbdFrame& frame, std::uint32_t pixel) const;
-    [[nodiscard]] Eigen::Matrix3d expected_outline(double mass);
-    void compare_outlines(const Eigen::Vector3d& centroid, double mass);
     void keep_axes(Place& place, const Eigen::Matrix3d& spread) const;
 
     RgbdCamera camera_;
-    std::vector<Weighted> now_, before_;
-    std::vector<float> weight_now_, weight_before_;  // a value a pixel
-    Eigen::Vector3d centroid_before_ = Eigen::Vector3d::Zero();
-    Eigen::Matrix3d measured_ = Eigen::Matrix3d::Zero();  // mean over `comparisons_`
-    double comparisons_ = 0.0;
+    OutlineError outline_;
+    OutlineError::Memory memory_;
+    Eigen::Vector3d wander_ = Eigen::Vector3d::Zero();
+    std::vector<OutlineError::Pixel> now_, before_;
     double usual_area_m2_ = 0.0;
 };
 

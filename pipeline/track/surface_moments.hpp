@@ -41,36 +41,24 @@ struct SurfaceMoments {
     double area_m2 = 0.0;  ///< seen, across the line of sight
     Eigen::Vector3d sum = Eigen::Vector3d::Zero();
     double squares = 0.0;
-    Eigen::Matrix3d noise = Eigen::Matrix3d::Zero();
 
     void add(const SurfacePoints& surface, const Eigen::Vector3d& p_cam) {
         const double z = p_cam.z();
-        const double sigma_share = surface.sigma_z(z) / z;
         ++points;
         area_m2 += z * z / (surface.lens().fx * surface.lens().fy);
         sum += p_cam;
         squares += p_cam.squaredNorm();
-        noise += sigma_share * sigma_share * p_cam * p_cam.transpose();
     }
     void add(const SurfaceMoments& part) {
         points += part.points;
         area_m2 += part.area_m2;
         sum += part.sum;
         squares += part.squares;
-        noise += part.noise;
     }
     [[nodiscard]] Eigen::Vector3d centroid() const { return sum / points; }
     /// RMS distance of the points from their centroid, m.
     [[nodiscard]] double extent() const {
         return std::sqrt(std::max(0.0, squares / points - centroid().squaredNorm()));
-    }
-    /// Of the centroid: the sensor's noise, and an outline that is known to half a pixel.
-    [[nodiscard]] Eigen::Matrix3d centroid_covariance(const Pinhole& lens) const {
-        const double n = points;
-        const double outline = 0.5 * centroid().z() / lens.fx;
-        Eigen::Matrix3d covariance = noise / (n * n);
-        covariance.diagonal().head<2>().array() += outline * outline / std::sqrt(n);
-        return covariance;
     }
 };
 

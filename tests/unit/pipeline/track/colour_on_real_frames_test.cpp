@@ -82,5 +82,25 @@ TEST(ColourOnRealFrames, ABlueBoxThatAlwaysStoodThere) {
     expect_at_rest({139, 63, 135, 132}, 0.0, 8);
 }
 
+TEST(ColourOnRealFrames, ABlueBoxFromAClickWandersNoMoreThanTold) {
+    if (!std::filesystem::exists(test::shared_data() / "xtion_boxes"))
+        GTEST_SKIP() << "no recordings of real sensors at " << test::shared_data();
+    auto samples = follow({200, 100, 1, 1}, 0.0);
+    ASSERT_GE(samples.size(), 8U);
+    samples.resize(8);  // later another box stands before it
+    Eigen::Vector3d mean = Eigen::Vector3d::Zero();
+    for (const auto& sample : samples)
+        mean += sample.p_cam / 8.0;
+    double error = 0.0;  // normalised, squared, for each degree of freedom
+    for (const auto& sample : samples)
+        error += (sample.p_cam - mean)
+                     .cwiseAbs2()
+                     .cwiseQuotient(sample.covariance.diagonal().head<3>())
+                     .mean() /
+                 7.0;
+    EXPECT_GT(error, 0.5);
+    EXPECT_LT(error, 2.0);
+}
+
 }  // namespace
 }  // namespace kinectlab
