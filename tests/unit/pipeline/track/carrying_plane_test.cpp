@@ -31,6 +31,7 @@ struct Bench {
     ShapeRoom room{5};
     Eigen::Matrix3d turn;
     Eigen::Vector3d middle{0.0, 0.45, 1.6};
+    TimeNs pause = 0;  ///< in which nothing was seen
 
     explicit Bench(double slope_deg) {
         turn =
@@ -57,7 +58,8 @@ struct Bench {
 
 /// One frame through the trackers of ball and plank; the sample of the plank.
 TrackSample seen(std::vector<std::unique_ptr<Tracker>>& trackers, Bench& bench, bool moved = true) {
-    const RgbdFrame frame = bench.room.frame();
+    RgbdFrame frame = bench.room.frame();
+    frame.t += bench.pause;
     const auto pixels = bench.room.pixels_of(kBall);
     std::vector<MovedPixels> segments;
     if (moved) segments.emplace_back(pixels);
@@ -169,6 +171,7 @@ TEST(CarryingPlane, GoesWithTheBallToAnotherPlane) {
     ASSERT_EQ(floor.status, TrackStatus::tracked);
     EXPECT_LT((floor.q_cam_obj * Eigen::Vector3d::UnitZ()).y(), -0.999);
     bench.put(0.0);
+    bench.pause = 2 * kNsPerSecond;  // somebody carries it over
     const auto sample = seen(trackers, bench);
     ASSERT_EQ(sample.status, TrackStatus::tracked);
     EXPECT_LT(bench.turn_off(sample), 0.01);
