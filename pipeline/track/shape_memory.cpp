@@ -19,7 +19,8 @@ constexpr int kLearned = 3;           // sightings; one may have been another th
 }  // namespace
 
 bool ShapeMemory::is_fresh(TimeNs t, TimeNs duration) const {
-    return in_a_row_ > 0 && t - place_.seen_at() <= duration;
+    const TimeNs age = t - place_.seen_at();  // below zero where a recording starts again
+    return in_a_row_ > 0 && age >= 0 && age <= duration;
 }
 
 double ShapeMemory::reach(TimeNs t) const {

@@ -36,6 +36,16 @@ TEST(ShapeMemory, WhatIsTooFarAwayIsAnotherThingForASecond) {
     EXPECT_TRUE(memory.may_be(ball(4 * kFrame + 2 * kNsPerSecond, {3.0, 0, 1.5})));
 }
 
+TEST(ShapeMemory, ARecordingThatStartsAgainHasNoPlaceYet) {
+    ShapeMemory memory;
+    for (int i = 0; i < 5; ++i)
+        memory.observe(ball((100 + i) * kFrame, {-0.6, 0, 1.5}));
+    const auto start = ball(0, {0.4, 0, 1.5});
+    EXPECT_TRUE(memory.may_be(start));
+    memory.observe(start);
+    EXPECT_FALSE(memory.may_be(ball(kFrame, {-0.6, 0, 1.5})));
+}
+
 TEST(ShapeMemory, ASizeThatWasLearnedHoldsUntilItIsForgotten) {
     ShapeMemory memory;
     for (int i = 0; i < 5; ++i)
