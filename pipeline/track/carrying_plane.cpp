@@ -90,14 +90,7 @@ private:
         sample.p_cam = fit.shape.point;
         sample.covariance = fit.covariance;
         sample.quality = fit.quality;
-        const Eigen::Vector3d& z = fit.shape.axis;
-        const Eigen::Vector3d right = Eigen::Vector3d::UnitX();
-        const Eigen::Vector3d x = std::abs(z.x()) < 0.95 ? right : z.unitOrthogonal();
-        Eigen::Matrix3d R_cam_obj;
-        R_cam_obj.col(0) = (x - z * z.dot(x)).normalized();
-        R_cam_obj.col(1) = z.cross(R_cam_obj.col(0));
-        R_cam_obj.col(2) = z;
-        sample.q_cam_obj = Eigen::Quaterniond(R_cam_obj);
+        sample.q_cam_obj = attitude_about(fit.shape.axis, Eigen::Vector3d::UnitX());
         sample.has_orientation = true;
     }
 

@@ -25,7 +25,6 @@ constexpr double kFastest_m_s = 4.0;        // what moves faster is another thin
 constexpr double kMostAround = 0.25;        // of the surroundings may have the thing's colours
 constexpr double kFewestInBox = 0.1;        // of a box must be the thing
 constexpr double kHalfVoteOfBounds = 0.45;  // given bounds: nearly all inside passes, little else
-constexpr double kLightShare = 0.15;        // of the vote on an outline: what wandering light moves
 constexpr double kNearest_m = 0.3;          // nearer than any sensor of the family reads
 
 class ColourTracker : public Tracker {
@@ -181,7 +180,7 @@ private:
     /// print join it or fall off.
     Eigen::Vector3d wander(const Target& target, const RgbdFrame& frame, MovedPixels at_place) {
         Eigen::Vector3d farthest = Eigen::Vector3d::Zero();
-        for (const double factor : {1.0 - kLightShare, 1.0 + kLightShare}) {
+        for (const double factor : {1.0 - PatchPlace::kCommonMode, 1.0 + PatchPlace::kCommonMode}) {
             const auto all = sight_.patches(
                 *target.table, factor * target.half_vote, sight_.whole_picture(), kFewestPixels
             );

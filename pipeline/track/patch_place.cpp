@@ -10,7 +10,6 @@
 namespace kinectlab {
 namespace {
 
-constexpr double kCommonMode = 0.15;      // of the half vote: what light and print leave open
 constexpr double kWanderCounts = 4.0;     // as many comparisons as the expectation is worth
 constexpr double kDifferentLength = 1.5;  // ratio of the axes' variances: longer beyond doubt
 constexpr double kHiddenShare = 0.1;      // less missing than this is noise

@@ -21,6 +21,9 @@ namespace kinectlab {
 ///   - what is hidden, if less is seen than usual.
 class PatchPlace {
 public:
+    /// Of the vote on an outline: what wandering light and a print leave open.
+    static constexpr double kCommonMode = 0.15;
+
     explicit PatchPlace(const RgbdCamera& camera);
 
     struct Place {

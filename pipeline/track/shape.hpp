@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include <Eigen/Core>
+#include <Eigen/Geometry>
 
 namespace kinectlab {
 
@@ -31,6 +32,20 @@ struct Shape {
     /// Radius of a sphere or cylinder, m; angle between a cone's axis and its surface, rad.
     double size = 0.0;
 };
+
+/// Camera from object for a shape that shows its axis only: z along it, x as near to `wanted_x` as
+/// can be. All unit vectors.
+[[nodiscard]] inline Eigen::Quaterniond attitude_about(
+    const Eigen::Vector3d& z, const Eigen::Vector3d& wanted_x
+) {
+    const bool along = std::abs(wanted_x.dot(z)) > 0.95;
+    const Eigen::Vector3d x = along ? Eigen::Vector3d(z.unitOrthogonal()) : wanted_x;
+    Eigen::Matrix3d R_cam_obj;
+    R_cam_obj.col(0) = (x - z * z.dot(x)).normalized();
+    R_cam_obj.col(1) = z.cross(R_cam_obj.col(0));
+    R_cam_obj.col(2) = z;
+    return Eigen::Quaterniond(R_cam_obj);
+}
 
 /// Sphere, cylinder and cone are one family. About their own point and axis, with q1, q2 across the
 /// axis and q3 along it,

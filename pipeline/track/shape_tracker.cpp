@@ -178,13 +178,9 @@ private:
             (cone ? sample.size.half_angle_u : sample.size.radius_u) = fit.size_u;
         }
         if (fit.shape.kind != ShapeKind::sphere) {
-            Eigen::Vector3d x = fresh ? Eigen::Vector3d(before.col(0)) : Eigen::Vector3d::UnitX();
-            if (std::abs(x.dot(z)) > 0.95) x = z.unitOrthogonal();
-            Eigen::Matrix3d R_cam_obj;
-            R_cam_obj.col(0) = (x - z * z.dot(x)).normalized();
-            R_cam_obj.col(1) = z.cross(R_cam_obj.col(0));
-            R_cam_obj.col(2) = z;
-            sample.q_cam_obj = Eigen::Quaterniond(R_cam_obj);
+            const Eigen::Vector3d x =
+                fresh ? Eigen::Vector3d(before.col(0)) : Eigen::Vector3d::UnitX();
+            sample.q_cam_obj = attitude_about(z, x);
             sample.has_orientation = true;
         }
         object.q_cam_obj = sample.q_cam_obj;
