@@ -1,7 +1,9 @@
 #include "pipeline/track/model_fit.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <numbers>
 
 #include <Eigen/Cholesky>
 
@@ -20,6 +22,10 @@ constexpr double kOutlineSigmaPx = 0.7;
 constexpr double kShadowSigmaPx = 2.0;  // an outline beside pixels without a reading
 constexpr int kOutlineFar = 14;         // px across an outline looked at in the first round
 constexpr int kOutlineNear = 5;         // and from then on
+constexpr int kMostRounds = 4;
+constexpr std::size_t kSides = 16;         // directions of an outline that err together
+constexpr double kSide_px = 0.29;          // 1/sqrt(12): a rim is at one pixel or the next
+constexpr double kOutlineShared_px = 7.0;  // so far along the outline readings err together
 constexpr int kMostShadow = 12;  // px without a reading between the object and what is behind
 
 double tukey(double residual, double gate) {
@@ -49,20 +55,51 @@ Eigen::Vector3d rotation_between(const Eigen::Matrix3d& from, const Eigen::Matri
 
 /// Normal equations of one step, and the tally of what the readings say.
 struct ModelFitter::Equations {
-    Matrix6d information = Matrix6d::Zero();
+    Matrix6d surface = Matrix6d::Zero(), outline = Matrix6d::Zero();  ///< lower halves
     Vector6d gradient = Vector6d::Zero();
     double squares = 0.0, weights = 0.0;
-    std::size_t offered = 0, agree = 0, nearer = 0, farther = 0;
+    std::size_t offered = 0, agree = 0, farther = 0;
     std::size_t outline_offered = 0, outline_found = 0;
+    /// What a side of the outline would pull if all of it were a pixel further out.
+    std::array<Vector6d, kSides> sides;
 
-    void add(const Vector6d& j, double residual, double weight) {
-        information.selfadjointView<Eigen::Lower>().rankUpdate(j, weight);
+    Equations() { sides.fill(Vector6d::Zero()); }
+
+    void add_surface(const Vector6d& j, double residual, double weight) {
+        surface.selfadjointView<Eigen::Lower>().rankUpdate(j, weight);
         gradient += weight * residual * j;
+    }
+    void add_outline(
+        const Vector6d& j, double residual, double weight, const Eigen::Vector2d& outwards
+    ) {
+        outline.selfadjointView<Eigen::Lower>().rankUpdate(j, weight);
+        gradient += weight * residual * j;
+        const double turn = std::atan2(outwards.y(), outwards.x()) / (2.0 * std::numbers::pi);
+        sides[static_cast<std::size_t>(kSides * (turn + 1.0) + 0.5) % kSides] += weight * j;
+    }
+    [[nodiscard]] Matrix6d information(const Vector6d& prior) const {
+        Matrix6d all = (surface + outline).selfadjointView<Eigen::Lower>();
+        all.diagonal() += prior;
+        return all;
+    }
+    /// Covariance of the gradient: neighbours err together, on the surface by so much more variance
+    /// than if each erred for itself, along the outline over a window, and a whole side where it
+    /// runs along the picture's rows.
+    [[nodiscard]] Matrix6d gradient_covariance(
+        double surface_inflation, double outline_step_px, const Vector6d& prior
+    ) const {
+        const double shared = std::max(1.0, kOutlineShared_px / outline_step_px);
+        Matrix6d all =
+            (surface_inflation * surface + shared * outline).selfadjointView<Eigen::Lower>();
+        for (const auto& side : sides)
+            all += kSide_px * kSide_px * side * side.transpose();
+        all.diagonal() += prior;
+        return all;
     }
 };
 
 ModelFitter::ModelFitter(const RgbdCamera& camera, const ModelViewer::Settings& view)
-    : camera_(camera), scale_(camera), viewer_(camera.depth, view) {}
+    : camera_(camera), scale_(camera), viewer_(camera.depth, view), noise_(camera.depth) {}
 
 void ModelFitter::add_surface(
     std::span<const std::uint16_t> depth,
@@ -70,7 +107,10 @@ void ModelFitter::add_surface(
     const Eigen::Isometry3d& T,
     double gate_m,
     Equations& sums
-) const {
+) {
+    readings_.pixel.clear();
+    readings_.weight.clear();
+    readings_.residual.clear();
     const Pinhole& k = camera_.depth;
     const Eigen::Vector3d centre = T.translation();
     for (const auto& point : view.surface) {
@@ -79,7 +119,8 @@ void ModelFitter::add_surface(
         const auto u = nearest_pixel(k.fx * p.x() / p.z() + k.cx);
         const auto v = nearest_pixel(k.fy * p.y() / p.z() + k.cy);
         if (u < 0 || v < 0 || u >= k.width || v >= k.height) continue;
-        const std::uint16_t counts = depth[static_cast<std::size_t>(v * k.width + u)];
+        const auto pixel = static_cast<std::uint32_t>(v * k.width + u);
+        const std::uint16_t counts = depth[pixel];
         if (counts == 0) continue;
         const Eigen::Vector3d n = T.linear() * point.n_obj;
         const Eigen::Vector3d ray = k.ray(u, v);
@@ -93,7 +134,6 @@ void ModelFitter::add_surface(
         const double sigma_m = sigma * scale_.inverse_depth_step * z * z;
         const double agree = std::max(kAgreeSigmas, kAgreeFloorM / sigma_m);
         ++sums.offered;
-        if (residual > agree) ++sums.nearer;
         if (residual < -agree) ++sums.farther;
         if (std::abs(residual) <= agree) ++sums.agree;
         const double weight = tukey(residual, std::max(kGateSigmas, gate_m / sigma_m));
@@ -102,7 +142,10 @@ void ModelFitter::add_surface(
         Vector6d j;
         j.head<3>() = slope * n;
         j.tail<3>() = slope * (z * ray - centre).cross(n);
-        sums.add(j, residual, weight);
+        sums.add_surface(j, residual, weight);
+        readings_.pixel.push_back(pixel);
+        readings_.weight.push_back(static_cast<float>(weight));
+        readings_.residual.push_back(static_cast<float>(residual));
         sums.squares += weight * residual * residual * sigma * sigma;
         sums.weights += weight;
     }
@@ -168,7 +211,7 @@ void ModelFitter::add_outline(
         Vector6d j;
         j.head<3>() = across;
         j.tail<3>() = (p - T.translation()).cross(across);
-        sums.add(j, best, weight);
+        sums.add_outline(j, best, weight, point.outwards);
     }
 }
 
@@ -184,8 +227,8 @@ std::optional<ModelFit> ModelFitter::fit(
     prior.head<3>().setConstant(1.0 / (start.sigma_m * start.sigma_m));
     prior.tail<3>().setConstant(1.0 / (start.sigma_rad * start.sigma_rad));
     Equations sums;
-    Matrix6d information;
     double gate_m = start.gate_m;
+    int reach = kOutlineFar;
     for (int round = 0; round < rounds; ++round) {
         const ModelView& view = viewer_.look(model, T);
         if (view.surface.size() < kFewestPoints) return std::nullopt;
@@ -193,14 +236,12 @@ std::optional<ModelFit> ModelFitter::fit(
             sums = {};
             add_surface(depth, view, T, gate_m, sums);
             if (sums.offered < kFewestPoints) return std::nullopt;
-            add_outline(depth, view, T, round == 0 ? kOutlineFar : kOutlineNear, sums);
+            add_outline(depth, view, T, reach, sums);
             Vector6d off;  // from the start: the prior pulls back what nothing else holds
             off.head<3>() = T.translation() - T_start.translation();
             off.tail<3>() = rotation_between(T_start.linear(), T.linear());
-            information = sums.information.selfadjointView<Eigen::Lower>();
-            information.diagonal() += prior;
             const Vector6d change =
-                information.ldlt().solve(sums.gradient - prior.cwiseProduct(off));
+                sums.information(prior).ldlt().solve(sums.gradient - prior.cwiseProduct(off));
             if (!change.allFinite()) return std::nullopt;
             T.linear() = turn(change.tail<3>()) * T.linear();
             T.translation() += change.head<3>();
@@ -208,6 +249,10 @@ std::optional<ModelFit> ModelFitter::fit(
             if (change.head<3>().norm() < 2e-5 && change.tail<3>().norm() < 2e-4) break;
         }
         gate_m = std::min(gate_m, 0.25 * start.gate_m);
+        // A face slides along itself until its outline is within reach.
+        const bool is_far = 10 * sums.outline_found < 3 * sums.outline_offered;
+        if (is_far && round == rounds - 1 && rounds < kMostRounds) ++rounds;
+        if (!is_far) reach = kOutlineNear;
     }
     // What is told of the fit is told at its end.
     const ModelView& view = viewer_.look(model, T);
@@ -215,20 +260,23 @@ std::optional<ModelFit> ModelFitter::fit(
     add_surface(depth, view, T, 0.0, sums);
     if (sums.offered < kFewestPoints || sums.weights < 10.0) return std::nullopt;
     add_outline(depth, view, T, kOutlineNear, sums);
-    information = sums.information.selfadjointView<Eigen::Lower>();
-    information.diagonal() += prior;
 
     ModelFit fit;
     fit.T_cam_obj = T;
-    const double rms = std::sqrt(sums.squares / sums.weights);
-    const double chi2 = std::max(1.0, std::pow(rms / scale_.sigma_steps, 2.0));
-    fit.covariance = chi2 * information.inverse();
+    readings_.offered = readings_.pixel.size();
+    const Matrix6d inverse = sums.information(prior).inverse();
+    fit.covariance = inverse *
+                     sums.gradient_covariance(
+                         noise_.inflation(readings_, 1.0, 6.0), view.outline_step_px, prior
+                     ) *
+                     inverse;
     fit.quality.points = static_cast<int>(sums.agree);
-    fit.quality.rms_steps = rms;
+    fit.quality.rms_steps = std::sqrt(sums.squares / sums.weights);
     const auto share = [](std::size_t part, std::size_t whole) {
         return whole == 0 ? 0.0 : static_cast<double>(part) / static_cast<double>(whole);
     };
     fit.quality.inlier_share = share(sums.agree, sums.agree + sums.farther);
+    fit.pixels = view.pixels;
     fit.seen_share = view.inside * share(sums.agree, view.surface.size());
     fit.seen_through_share = share(sums.farther, sums.offered);
     fit.outline_share = share(sums.outline_found, sums.outline_offered);

@@ -9,7 +9,9 @@
 #include "pipeline/core/camera.hpp"
 #include "pipeline/core/disparity.hpp"
 #include "pipeline/core/track_sample.hpp"
+#include "pipeline/track/correlated_noise.hpp"
 #include "pipeline/track/model_view.hpp"
+#include "pipeline/track/shape_pixels.hpp"
 
 namespace kinectlab {
 
@@ -27,6 +29,7 @@ struct ModelFit {
     TrackQuality quality;  ///< inlier_share is of the readings that could show the object
     double seen_share = 0.0;          ///< of its surface on this side: readings that lie on it
     double seen_through_share = 0.0;  ///< readings from behind it: it cannot be there
+    std::size_t pixels = 0;           ///< that it covers in the picture
     double outline_share = 0.0;       ///< of its outline: found where it should be; 0 without one
 };
 
@@ -37,7 +40,8 @@ struct ModelFit {
 /// A plane n·p = d that moves by (δt, δω about the centre c) changes the inverse depth at a ray r
 /// by
 ///   -n·(δt + δω x (q - c)) / ((n·r) Z²),  q = Z r the point it shows.
-/// Not thread-safe; no allocation once warm.
+/// The covariance reckons with what neighbouring pixels err together, on the surface (measured,
+/// CorrelatedNoise) and along the outline. Not thread-safe; no allocation once warm.
 class ModelFitter {
 public:
     explicit ModelFitter(const RgbdCamera& camera, const ModelViewer::Settings& view = {});
@@ -60,7 +64,7 @@ private:
         const Eigen::Isometry3d& T,
         double gate_m,
         Equations& sums
-    ) const;
+    );
     void add_outline(
         std::span<const std::uint16_t> depth,
         const ModelView& view,
@@ -72,6 +76,8 @@ private:
     RgbdCamera camera_;
     DisparityScale scale_;
     ModelViewer viewer_;
+    CorrelatedNoise noise_;
+    ShapePixels readings_;  // of the last add_surface, residuals in standard deviations
 };
 
 }  // namespace kinectlab

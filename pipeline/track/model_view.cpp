@@ -169,6 +169,7 @@ void ModelViewer::take_outline(const Eigen::Isometry3d& T_cam_obj) {
         }
     }
     const std::size_t stride = rim_.size() / settings_.most_outline + 1;
+    view_.outline_step_px = static_cast<double>(stride) * picture_.step;
     for (std::size_t i = 0; i < rim_.size(); i += stride)
         view_.outline.push_back(rim_[i]);
 }

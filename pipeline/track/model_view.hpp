@@ -26,6 +26,7 @@ struct OutlinePoint {
 struct ModelView {
     std::vector<ViewPoint> surface;     ///< spread evenly over the picture
     std::vector<OutlinePoint> outline;  ///< none inside the picture's border, none of a cloud
+    double outline_step_px = 1.0;       ///< from one point of it to the next
     std::size_t pixels = 0;             ///< that the object covers
     double inside = 0.0;                ///< share of the box about it that lies inside the picture
 };

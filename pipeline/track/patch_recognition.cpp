@@ -11,7 +11,12 @@ constexpr double kMostPatchDistance = 0.5;  // χ²
 constexpr float kRoughScore = 0.1F;         // of a pose as it was proposed
 constexpr float kLeastScore = 0.3F;         // of one that was moved nearer
 constexpr std::size_t kSketches = 160;      // poses that are laid upon the picture
-constexpr double kPlainMerit = 0.93;        // with an outline nothing better is to be expected
+constexpr std::size_t kMovedSketches = 40;  // of one thing that moved
+constexpr std::size_t kMostMoved = 4;       // things that moved, the biggest
+constexpr double kWholeThing = 0.75;        // of the object, and of what moved
+constexpr double kOutlineOfMoved = 0.3;
+constexpr int kBorder_px = 10;        // a Kinect reads nothing in its last columns
+constexpr double kPlainMerit = 0.93;  // with an outline nothing better is to be expected
 // Cartons of other sizes reach 0.78 with a carton's cloud, itself 0.86.
 constexpr double kLeastMeritOfCloud = 0.82;
 constexpr double kMostNoiseRadii = 0.03;
@@ -32,6 +37,32 @@ Eigen::Matrix3d frame_of(const CurvedPoint& point) {
     axes.col(0) = (point.direction - point.normal * point.normal.dot(point.direction)).normalized();
     axes.col(1) = axes.col(2).cross(axes.col(0));
     return axes;
+}
+
+/// Whether it may go on beyond the picture: its middle then says nothing of the object's.
+bool is_cut_off(std::span<const std::uint32_t> pixels, const Pinhole& lens) {
+    return std::any_of(pixels.begin(), pixels.end(), [&lens](std::uint32_t pixel) {
+        const int column = static_cast<int>(pixel) % lens.width;
+        const int row = static_cast<int>(pixel) / lens.width;
+        return column < kBorder_px || column >= lens.width - kBorder_px || row < kBorder_px ||
+               row >= lens.height - kBorder_px;
+    });
+}
+
+/// Of the pixels that moved, 1 where that is not known.
+double explained_share(const ModelFit& fit, std::size_t moved_pixels) {
+    if (moved_pixels == 0) return 1.0;
+    const double covered = fit.seen_share * static_cast<double>(fit.pixels);
+    return std::min(1.0, covered / static_cast<double>(moved_pixels));
+}
+
+/// A thing on a table has no outline where it stands; that it moved as a whole says as much.
+Acceptance limits_for(const ModelFit& fit, std::size_t moved_pixels) {
+    Acceptance limits;
+    const bool is_whole =
+        fit.seen_share > kWholeThing && explained_share(fit, moved_pixels) > kWholeThing;
+    if (moved_pixels > 0 && is_whole) limits.least_outline = kOutlineOfMoved;
+    return limits;
 }
 
 }  // namespace
@@ -63,6 +94,14 @@ PatchRecogniser::PatchRecogniser(
       sketch_(camera, {240, 60, 2500}),
       fitter_(camera) {}
 
+void PatchRecogniser::consider(const ViewPose& pose) {
+    const SketchView& view = table_.view(pose.view);
+    if (check_.score(pose.T_cam_obj, view) < kRoughScore) return;
+    const Eigen::Isometry3f settled = check_.settle(pose.T_cam_obj, view);
+    const float reached = check_.score(settled, view);
+    if (reached >= kLeastScore) proposals_.push_back({settled, reached, pose.view});
+}
+
 void PatchRecogniser::consider(const SurfacePatch& patch, const ModelPatch& match) {
     const Eigen::Matrix3d from = frame_of(match.patch.keypoint);
     Eigen::Matrix3d to = frame_of(patch.keypoint);
@@ -70,13 +109,7 @@ void PatchRecogniser::consider(const SurfacePatch& patch, const ModelPatch& matc
         Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
         T.linear() = to * from.transpose();
         T.translation() = patch.keypoint.p_cam - T.linear() * match.patch.keypoint.p_cam;
-        const Eigen::Isometry3f pose = T.cast<float>();
-        const SketchView& view = table_.view(match.view);
-        if (check_.score(pose, view) >= kRoughScore) {
-            const Eigen::Isometry3f settled = check_.settle(pose, view);
-            const float reached = check_.score(settled, view);
-            if (reached >= kLeastScore) proposals_.push_back({settled, reached, match.view});
-        }
+        consider({T.cast<float>(), match.view});
         to.col(0) = -to.col(0);
         to.col(1) = -to.col(1);
     }
@@ -87,7 +120,7 @@ void PatchRecogniser::propose(const SurfacePatch& patch) {
         consider(patch, *match);
 }
 
-std::vector<PatchRecogniser::Proposal> PatchRecogniser::distinct_best() const {
+std::vector<PatchRecogniser::Proposal> PatchRecogniser::distinct_best(std::size_t most) const {
     std::vector<Proposal> chosen;
     for (const auto& proposal : proposals_) {
         const Eigen::Isometry3f& T = proposal.T_cam_obj;
@@ -99,17 +132,19 @@ std::vector<PatchRecogniser::Proposal> PatchRecogniser::distinct_best() const {
                    std::acos(std::clamp(cosine, -1.0F, 1.0F)) < 0.2F;
         });
         if (is_new) chosen.push_back(proposal);
-        if (chosen.size() == kSketches) break;
+        if (chosen.size() == most) break;
     }
     return chosen;
 }
 
 /// A cloud has no outline of its own: there the rough check of what lies beside it has to do, or a
-/// flat face would fit on any wall.
-double PatchRecogniser::merit(const ModelFit& fit, float score) const {
+/// flat face would fit on any wall. What moved (0 pixels: not known) is the object, not a part of
+/// it that looks like another side.
+double PatchRecogniser::merit(const ModelFit& fit, float score, std::size_t moved_pixels) const {
     const double outline =
         0.5 + 0.5 * (model_->has_outline ? fit.outline_share : static_cast<double>(score));
-    return fit.seen_share * fit.quality.inlier_share * fit.quality.inlier_share * outline;
+    return fit.seen_share * fit.quality.inlier_share * fit.quality.inlier_share * outline *
+           explained_share(fit, moved_pixels);
 }
 
 /// Whether the noise at that distance hides what tells a cloud from any flat thing of its size.
@@ -120,54 +155,71 @@ bool PatchRecogniser::is_blurred(double z_m) const {
     return sigma_m > kMostNoiseRadii * model_->radius_m;
 }
 
-std::optional<ModelFit> PatchRecogniser::find(std::span<const std::uint16_t> depth) {
-    check_.set(depth);
-    proposals_.clear();
-    for (const auto& patch : find_surface_patches(depth, camera_, settings_))
-        propose(patch);
+std::vector<PatchRecogniser::Sketch> PatchRecogniser::best_sketches(
+    std::span<const std::uint16_t> depth, std::size_t most, std::size_t moved_pixels
+) {
     std::stable_sort(
         proposals_.begin(),
         proposals_.end(),
         [](const Proposal& a, const Proposal& b) { return a.score > b.score; }
     );
-
-    struct Sketch {
-        Eigen::Isometry3d T_cam_obj;
-        float score;
-        std::uint32_t view;
-        double merit;
-    };
     const ModelFitStart far{0.05, 0.5, 0.06};
     std::vector<Sketch> sketches;
-    for (const auto& proposal : distinct_best()) {
+    for (const auto& proposal : distinct_best(most)) {
         const auto fit =
             sketch_.fit(depth, *model_, proposal.T_cam_obj.cast<double>(), far, kSketchRounds);
         if (!fit) continue;
-        sketches.push_back(
-            {fit->T_cam_obj, proposal.score, proposal.view, merit(*fit, proposal.score)}
-        );
-        if (model_->has_outline && sketches.back().merit > kPlainMerit) break;
+        const double reached = merit(*fit, proposal.score, moved_pixels);
+        sketches.push_back({fit->T_cam_obj, proposal.score, proposal.view, reached});
+        if (model_->has_outline && reached > kPlainMerit) break;
     }
     std::stable_sort(sketches.begin(), sketches.end(), [](const Sketch& a, const Sketch& b) {
         return a.merit > b.merit;
     });
     if (sketches.size() > kFinals) sketches.resize(kFinals);
+    return sketches;
+}
 
+std::optional<ModelFit> PatchRecogniser::best_fit(
+    std::span<const std::uint16_t> depth, std::size_t most, std::size_t moved_pixels
+) {
     std::optional<ModelFit> best;
-    double most = 0.0;
-    for (const auto& sketch : sketches) {
+    double best_merit = 0.0;
+    for (const auto& sketch : best_sketches(depth, most, moved_pixels)) {
         const auto fit = fitter_.fit(depth, *model_, sketch.T_cam_obj, {}, 3);
-        if (!fit || !is_accepted(*fit, *model_, camera_, {})) continue;
+        if (!fit || !is_accepted(*fit, *model_, camera_, limits_for(*fit, moved_pixels))) continue;
         const float score = check_.score(fit->T_cam_obj.cast<float>(), table_.view(sketch.view));
-        const double reached = merit(*fit, score);
+        const double reached = merit(*fit, score, moved_pixels);
         if (!model_->has_outline &&
             (reached < kLeastMeritOfCloud || is_blurred(fit->T_cam_obj.translation().z())))
             continue;
-        if (best && reached <= most) continue;
+        if (best && reached <= best_merit) continue;
         best = fit;
-        most = reached;
+        best_merit = reached;
     }
     return best;
+}
+
+std::optional<ModelFit> PatchRecogniser::find_moved(
+    std::span<const std::uint16_t> depth, std::span<const std::span<const std::uint32_t>> moved
+) {
+    check_.set(depth);
+    for (const auto& pixels : moved.first(std::min(moved.size(), kMostMoved))) {
+        if (is_cut_off(pixels, camera_.depth)) continue;
+        proposals_.clear();
+        for (const auto& pose : moved_poses(depth, camera_, pixels, table_))
+            consider(pose);
+        if (auto fit = best_fit(depth, kMovedSketches, pixels.size())) return fit;
+    }
+    return std::nullopt;
+}
+
+std::optional<ModelFit> PatchRecogniser::find(std::span<const std::uint16_t> depth) {
+    check_.set(depth);
+    proposals_.clear();
+    for (const auto& patch : find_surface_patches(depth, camera_, settings_))
+        propose(patch);
+    return best_fit(depth, kSketches, 0);
 }
 
 }  // namespace kinectlab

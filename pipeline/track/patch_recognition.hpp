@@ -7,6 +7,7 @@
 #include <span>
 
 #include "pipeline/track/model_fit.hpp"
+#include "pipeline/track/moved_poses.hpp"
 #include "pipeline/track/patch_table.hpp"
 
 namespace kinectlab {
@@ -26,7 +27,8 @@ struct Acceptance {
     const Acceptance& limits
 );
 
-/// Finds an object anywhere in a picture. Each of the picture's patches proposes, for the model's
+/// Finds an object anywhere in a picture. What moved is looked at first, from all sides
+/// (moved_poses). Otherwise each of the picture's patches proposes, for the model's
 /// patches that the table gives it, the poses that lay one keypoint, its normal and its direction
 /// of least bending upon the other's (two, the direction has no sign); poses are checked on a
 /// growing number of the view's points against the readings, moved nearer, checked again, the best
@@ -38,6 +40,12 @@ public:
         const RgbdCamera& camera, std::shared_ptr<const ObjectModel> model, std::uint32_t seed = 1
     );
 
+    /// In what moved, segments of row-major pixels: some milliseconds for each of the biggest.
+    [[nodiscard]] std::optional<ModelFit> find_moved(
+        std::span<const std::uint16_t> depth, std::span<const std::span<const std::uint32_t>> moved
+    );
+
+    /// Anywhere: some tenths of a second.
     [[nodiscard]] std::optional<ModelFit> find(std::span<const std::uint16_t> depth);
 
     /// Patches of the model in its table; an object without any, such as a ball, is never found.
@@ -50,11 +58,25 @@ private:
         std::uint32_t view;
     };
 
+    struct Sketch {
+        Eigen::Isometry3d T_cam_obj;
+        float score;
+        std::uint32_t view;
+        double merit;
+    };
+
     void propose(const SurfacePatch& patch);
     void consider(const SurfacePatch& patch, const ModelPatch& match);
-    [[nodiscard]] std::vector<Proposal> distinct_best() const;
+    void consider(const ViewPose& pose);
+    [[nodiscard]] std::vector<Proposal> distinct_best(std::size_t most) const;
+    [[nodiscard]] std::vector<Sketch> best_sketches(
+        std::span<const std::uint16_t> depth, std::size_t most, std::size_t moved_pixels
+    );
+    [[nodiscard]] std::optional<ModelFit> best_fit(
+        std::span<const std::uint16_t> depth, std::size_t most, std::size_t moved_pixels
+    );
     [[nodiscard]] bool is_blurred(double z_m) const;
-    [[nodiscard]] double merit(const ModelFit& fit, float score) const;
+    [[nodiscard]] double merit(const ModelFit& fit, float score, std::size_t moved_pixels) const;
 
     RgbdCamera camera_;
     std::shared_ptr<const ObjectModel> model_;

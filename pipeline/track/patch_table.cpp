@@ -58,6 +58,7 @@ SketchView sketch_of(
     const ModelView& seen, const Eigen::Isometry3d& T_cam_obj, double radius_m, std::mt19937& random
 ) {
     SketchView view;
+    view.R_cam_obj = T_cam_obj.linear().cast<float>();
     for (const auto& point : seen.surface)
         view.surface.push_back({point.p_obj.cast<float>(), point.n_obj.cast<float>()});
     std::shuffle(view.surface.begin(), view.surface.end(), random);

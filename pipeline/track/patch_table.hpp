@@ -39,6 +39,7 @@ public:
 
     /// What the view showed, for checks of poses.
     [[nodiscard]] const SketchView& view(std::uint32_t index) const { return views_[index]; }
+    [[nodiscard]] std::uint32_t views() const { return static_cast<std::uint32_t>(views_.size()); }
     [[nodiscard]] std::size_t size() const { return patches_.size(); }
 
 private:

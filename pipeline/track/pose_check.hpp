@@ -19,6 +19,7 @@ struct SketchView {
     };
     std::vector<Point> surface;  ///< in random order: the first ones are spread over it as well
     std::vector<Eigen::Vector3f> outside;  ///< beside its outline: what is seen there is not it
+    Eigen::Matrix3f R_cam_obj = Eigen::Matrix3f::Identity();  ///< seen from along the optical axis
 };
 
 /// Checks thousands of poses against a depth picture, and moves a rough one nearer. The surface's

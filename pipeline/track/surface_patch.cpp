@@ -16,6 +16,7 @@ constexpr TimeNs kMemory = kNsPerSecond / 2;  // a place older than this says no
 constexpr double kOrientationSigma = 0.2;     // rad: less sure than this is not seen
 constexpr double kCertainTurn = 0.01;         // rad: a mesh's facets do not make it this sure
 constexpr double kTryTurn = 0.2;              // rad
+constexpr int kLongestPause = 7;              // frames
 
 /// What keeps an object that was seen a moment ago: less than it takes to recognise one.
 constexpr Acceptance kFollowed{0.25, 0.65, 0.2, 4.0};
@@ -26,6 +27,9 @@ struct Target {
     std::unique_ptr<PatchRecogniser> recogniser;
     std::optional<ModelFit> last;
     TimeNs seen_at = 0;
+    bool is_new = false;  ///< recognised, not followed yet: how it moves is not known
+    int pause = 0;        ///< frames in which it is only looked for in what moved
+    int last_pause = 0;   ///< frames
     Eigen::Vector3d velocity = Eigen::Vector3d::Zero();  ///< m/s
     Eigen::Vector3d turning = Eigen::Vector3d::Zero();   ///< rad/s, camera frame
 };
@@ -87,15 +91,18 @@ public:
         : camera_(camera),
           targets_(std::move(targets)),
           fitter_(camera),
+          trial_(camera),
           viewer_(camera.depth, {0, 0, 1'000'000}) {}
 
     void track(
-        const RgbdFrame& frame, std::span<const MovedPixels>, std::vector<TrackSample>& samples
+        const RgbdFrame& frame,
+        std::span<const MovedPixels> moved,
+        std::vector<TrackSample>& samples
     ) override {
         fits_.assign(targets_.size(), std::nullopt);
         for (std::size_t i = 0; i < targets_.size(); ++i)
             fits_[i] = follow(targets_[i], frame);
-        recognise_lost(frame);
+        recognise_lost(frame, moved);
         for (std::size_t i = 0; i < targets_.size(); ++i) {
             if (fits_[i]) {
                 own_up_to_symmetry(*targets_[i].model, frame, *fits_[i]);
@@ -112,8 +119,10 @@ public:
     }
 
     void reset() override {
-        for (auto& target : targets_)
+        for (auto& target : targets_) {
             target.last.reset();
+            target.pause = target.last_pause = 0;
+        }
     }
 
 private:
@@ -123,6 +132,7 @@ private:
         auto fit = accepted(target, frame, predicted(target, frame.t));
         const bool moved = !target.velocity.isZero() || !target.turning.isZero();
         if (!fit && moved) fit = accepted(target, frame, target.last->T_cam_obj);
+        target.is_new = false;
         return fit;
     }
 
@@ -130,7 +140,8 @@ private:
         const Target& target, const RgbdFrame& frame, const Eigen::Isometry3d& T_start
     ) {
         auto fit = fitter_.fit(frame.depth, *target.model, T_start, {});
-        if (fit && !is_accepted(*fit, *target.model, camera_, kFollowed)) fit.reset();
+        const Acceptance limits = target.is_new ? Acceptance{} : kFollowed;
+        if (fit && !is_accepted(*fit, *target.model, camera_, limits)) fit.reset();
         return fit;
     }
 
@@ -147,7 +158,7 @@ private:
         for (const double angle : {kTryTurn, -kTryTurn}) {
             Eigen::Isometry3d start = fit.T_cam_obj;
             start.linear() = Eigen::AngleAxisd(angle, axis) * start.linear();
-            const auto other = fitter_.fit(frame.depth, model, start, {});
+            const auto other = trial_.fit(frame.depth, model, start, {});
             if (!other) return;
             const Eigen::AngleAxisd left(
                 other->T_cam_obj.linear() * fit.T_cam_obj.linear().transpose()
@@ -161,7 +172,7 @@ private:
     }
 
     /// What others were found in is taken out, so that two of a kind are two.
-    void recognise_lost(const RgbdFrame& frame) {
+    void recognise_lost(const RgbdFrame& frame, std::span<const MovedPixels> moved) {
         const auto is_lost = [](const auto& fit) {
             return !fit;
         };
@@ -171,11 +182,25 @@ private:
             if (fits_[i]) take_out(*targets_[i].model, fits_[i]->T_cam_obj);
         for (std::size_t i = 0; i < targets_.size(); ++i) {
             if (fits_[i]) continue;
-            fits_[i] = targets_[i].recogniser->find(rest_);
+            fits_[i] = recognised(targets_[i], moved);
             if (!fits_[i]) continue;
+            targets_[i].is_new = true;
             targets_[i].last.reset();  // no velocity from where it was lost to here
             take_out(*targets_[i].model, fits_[i]->T_cam_obj);
         }
+    }
+
+    /// What is not there must not cost a search of the whole picture in each frame.
+    std::optional<ModelFit> recognised(Target& target, std::span<const MovedPixels> moved) {
+        auto fit = target.recogniser->find_moved(rest_, moved);
+        if (!fit && target.pause > 0) {
+            --target.pause;
+            return std::nullopt;
+        }
+        if (!fit) fit = target.recogniser->find(rest_);
+        target.last_pause = fit ? 0 : std::min(kLongestPause, 2 * target.last_pause + 1);
+        target.pause = target.last_pause;
+        return fit;
     }
 
     void take_out(const ObjectModel& model, const Eigen::Isometry3d& T_cam_obj) {
@@ -193,6 +218,7 @@ private:
     RgbdCamera camera_;
     std::vector<Target> targets_;
     ModelFitter fitter_;
+    ModelFitter trial_;  // of poses that are wrong: their noise is not to be learned
     ModelViewer viewer_;
     std::vector<std::optional<ModelFit>> fits_;
     std::vector<std::uint16_t> rest_;

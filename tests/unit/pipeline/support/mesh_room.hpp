@@ -19,13 +19,14 @@ struct Thing {
 
 /// Meshes before a wall, found by meeting every ray with every triangle (Möller & Trumbore 1997): a
 /// truth that shares no code with the project. Gaussian noise of the disparity and its rounding to
-/// whole steps, independent for each pixel, after Khoshelham & Elberink 2012.
+/// whole steps, after Khoshelham & Elberink 2012; independent for each pixel if not told otherwise.
 class MeshRoom {
 public:
     double wall_m = 2.5;   ///< distance of a wall across the optical axis; 0 = none
     double floor_m = 0.0;  ///< y of a level floor below the camera; 0 = none
     double sigma_steps = 0.5;
     double step = 2.85e-3;  ///< 1/m
+    double shared = 0.0;    ///< of the noise's variance common to 5x5 neighbours, as in a Kinect
     double missing_share = 0.0;
     bool rounded = true;
     RgbdCamera camera;
@@ -42,8 +43,9 @@ public:
         frame.index = index_;
         frame.t = static_cast<TimeNs>(index_++) * 33'333'333 + 1;
         frame.depth.resize(z.size());
+        if (shared > 0.0) draw_shared();
         for (std::size_t i = 0; i < z.size(); ++i)
-            frame.depth[i] = noisy(z[i]);
+            frame.depth[i] = noisy(z[i], shared > 0.0 ? common_[i] : 0.0);
         return frame;
     }
 
@@ -102,13 +104,31 @@ private:
         }
     }
 
-    std::uint16_t noisy(double z) {
+    /// Sums over 5x5 of white noise, of variance 1.
+    void draw_shared() {
+        const int width = camera.depth.width, height = camera.depth.height;
+        const auto size = static_cast<std::size_t>(width * height);
+        std::vector<double> white(size), rows(size);
+        for (auto& value : white)
+            value = normal_(random_);
+        common_.assign(size, 0.0);
+        for (std::size_t i = 2; i + 2 < size; ++i)
+            rows[i] = white[i - 2] + white[i - 1] + white[i] + white[i + 1] + white[i + 2];
+        const auto w = static_cast<std::size_t>(width);
+        for (std::size_t i = 2 * w; i + 2 * w < size; ++i)
+            common_[i] =
+                0.2 * (rows[i - 2 * w] + rows[i - w] + rows[i] + rows[i + w] + rows[i + 2 * w]);
+    }
+
+    std::uint16_t noisy(double z, double common) {
         if (z <= 0.0) return 0;
         if (missing_share > 0.0 &&
             std::uniform_real_distribution<>(0.0, 1.0)(random_) < missing_share)
             return 0;
         double steps = 1.0 / (step * z);
-        if (sigma_steps > 0.0) steps += sigma_steps * normal_(random_);
+        if (sigma_steps > 0.0)
+            steps += sigma_steps *
+                     (std::sqrt(shared) * common + std::sqrt(1.0 - shared) * normal_(random_));
         if (rounded) steps = std::round(steps);
         const double counts = std::round(1.0 / (step * steps) / camera.depth_unit_m);
         return counts > 0.0 && counts < 65535.0 ? static_cast<std::uint16_t>(counts)
@@ -117,6 +137,7 @@ private:
 
     std::mt19937 random_;
     std::normal_distribution<> normal_{0.0, 1.0};
+    std::vector<double> common_;
     std::uint64_t index_ = 0;
 };
 

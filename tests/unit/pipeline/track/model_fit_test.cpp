@@ -55,6 +55,38 @@ TEST(ModelFit, ABoxIsFoundToAFractionOfItsNoiseFromAStartThatIsOff) {
     EXPECT_GT(normed / frames, 0.1);
 }
 
+/// Mean of eᵀ Σ⁻¹ e of the position for each degree of freedom, neighbours erring together.
+double normalised_error(double motion_m, double turn_rad) {
+    MeshRoom room(3);
+    room.shared = 0.7;
+    const auto mesh = test::box_mesh(0.16, 0.10, 0.12);
+    const auto model = make_object_model(mesh);
+    ModelFitter fitter(room.camera);
+    double normed = 0.0;
+    constexpr int kFrames = 40;
+    for (int i = 0; i < kFrames; ++i) {
+        const Eigen::Isometry3d T = pose({motion_m * i - 0.1, 0.05, 1.2}, 0.4 + turn_rad * i, 0.5);
+        const auto fit = fitter.fit(room.frame({{mesh, T}}).depth, *model, T, {});
+        EXPECT_TRUE(fit.has_value());
+        if (!fit) continue;
+        const Eigen::Vector3d off = fit->T_cam_obj.translation() - T.translation();
+        normed += off.dot(fit->covariance.topLeftCorner<3, 3>().inverse() * off) / 3.0;
+    }
+    return normed / kFrames;
+}
+
+TEST(ModelFit, CovarianceCoversTheErrorOfNeighboursThatErrTogetherAtRest) {
+    const double error = normalised_error(0.0, 0.0);
+    EXPECT_GT(error, 0.5);
+    EXPECT_LT(error, 2.0);
+}
+
+TEST(ModelFit, CovarianceCoversTheErrorOfNeighboursThatErrTogetherInMotion) {
+    const double error = normalised_error(0.0063, 0.021);
+    EXPECT_GT(error, 0.5);
+    EXPECT_LT(error, 2.0);
+}
+
 TEST(ModelFit, AFaceSquareToTheCameraIsHeldByItsOutline) {
     MeshRoom room(4);
     const auto mesh = test::box_mesh(0.16, 0.10, 0.12);

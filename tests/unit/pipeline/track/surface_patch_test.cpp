@@ -74,6 +74,51 @@ TEST(SurfacePatchTracker, RecognisesFollowsLosesAndFindsAgain) {
     }
 }
 
+/// The pixels of a picture that differ from those of the room without the thing.
+std::vector<std::uint32_t> pixels_of(const RgbdFrame& frame, const RgbdFrame& empty) {
+    std::vector<std::uint32_t> pixels;
+    for (std::uint32_t i = 0; i < frame.depth.size(); ++i)
+        if (frame.depth[i] + 60 < empty.depth[i]) pixels.push_back(i);
+    return pixels;
+}
+
+TEST(SurfacePatchTracker, AFlatFaceSquareToTheCameraIsKnownByWhatMoved) {
+    MeshRoom room(13);
+    const auto mesh = test::box_mesh(0.16, 0.10, 0.12);
+    const auto tracker = tracker_of(room, {spec_of(mesh)});
+    const auto empty = room.frame({});
+    Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
+    T.translation() = Eigen::Vector3d(0.0, 0.0, 1.8);
+    for (int i = 0; i < 5; ++i) {
+        T.translation().x() = -0.2 + 0.1 * i;  // further than it is followed
+        const auto frame = room.frame({{mesh, T}});
+        const auto pixels = pixels_of(frame, empty);
+        const std::array<MovedPixels, 1> moved{pixels};
+        std::vector<TrackSample> samples;
+        tracker->track(frame, moved, samples);
+        ASSERT_EQ(samples[0].status, TrackStatus::tracked) << i;
+        EXPECT_LT((samples[0].p_cam - T.translation()).norm(), 0.004) << i;
+    }
+}
+
+TEST(SurfacePatchTracker, WhatThePicturesBorderCutsIsNotTakenForASmallerSide) {
+    MeshRoom room(14);
+    const auto mesh = test::box_mesh(0.16, 0.10, 0.12);
+    const auto tracker = tracker_of(room, {spec_of(mesh)});
+    const auto empty = room.frame({});
+    Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
+    T.translation() =
+        Eigen::Vector3d(-1.02, 0.0, 1.8);  // 10 of 16 cm of its face are in the picture
+    const auto frame = room.frame({{mesh, T}});
+    const auto pixels = pixels_of(frame, empty);
+    ASSERT_GT(pixels.size(), 300U);
+    const std::array<MovedPixels, 1> moved{pixels};
+    std::vector<TrackSample> samples;
+    tracker->track(frame, moved, samples);
+    if (samples[0].status != TrackStatus::tracked) return;
+    EXPECT_LT((samples[0].p_cam - T.translation()).norm(), 0.01);
+}
+
 TEST(SurfacePatchTracker, ReportsTheModelsOwnFrameInItsOwnUnit) {
     MeshRoom room(9);
     const auto mesh = angle_iron();
