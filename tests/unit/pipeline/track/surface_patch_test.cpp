@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "pipeline/track/patch_recognition.hpp"
 #include "tests/unit/pipeline/support/mesh_room.hpp"
 
 namespace kinectlab {
@@ -101,22 +102,21 @@ TEST(SurfacePatchTracker, AFlatFaceSquareToTheCameraIsKnownByWhatMoved) {
     }
 }
 
-TEST(SurfacePatchTracker, WhatThePicturesBorderCutsIsNotTakenForASmallerSide) {
+TEST(PatchRecogniser, WhatReachesThePicturesBorderIsNotTakenForAWhole) {
     MeshRoom room(14);
     const auto mesh = test::box_mesh(0.16, 0.10, 0.12);
-    const auto tracker = tracker_of(room, {spec_of(mesh)});
+    const auto model = make_object_model(mesh);
+    ASSERT_TRUE(model.has_value());
+    PatchRecogniser recogniser(room.camera, std::make_shared<const ObjectModel>(*model));
     const auto empty = room.frame({});
     Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
-    T.translation() =
-        Eigen::Vector3d(-1.02, 0.0, 1.8);  // 10 of 16 cm of its face are in the picture
-    const auto frame = room.frame({{mesh, T}});
-    const auto pixels = pixels_of(frame, empty);
-    ASSERT_GT(pixels.size(), 300U);
-    const std::array<MovedPixels, 1> moved{pixels};
-    std::vector<TrackSample> samples;
-    tracker->track(frame, moved, samples);
-    if (samples[0].status != TrackStatus::tracked) return;
-    EXPECT_LT((samples[0].p_cam - T.translation()).norm(), 0.01);
+    for (const auto& [x, is_found] : {std::pair{-0.6, true}, std::pair{-0.96, false}}) {
+        T.translation() = Eigen::Vector3d(x, 0.0, 1.8);
+        const auto frame = room.frame({{mesh, T}});
+        const auto pixels = pixels_of(frame, empty);
+        const std::array<MovedPixels, 1> moved{pixels};
+        EXPECT_EQ(recogniser.find_moved(frame.depth, moved).has_value(), is_found) << x;
+    }
 }
 
 TEST(SurfacePatchTracker, ReportsTheModelsOwnFrameInItsOwnUnit) {
