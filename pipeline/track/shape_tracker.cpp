@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "pipeline/track/plane_wander.hpp"
 #include "pipeline/track/shape_detect.hpp"
 #include "pipeline/track/shape_memory.hpp"
 #include "pipeline/track/shapes.hpp"
@@ -23,7 +24,7 @@ public:
     ShapeTracker(const RgbdCamera& camera, std::vector<ShapeTarget> targets)
         : camera_(camera), image_(camera), detector_(camera) {
         for (auto& target : targets)
-            objects_.push_back({std::move(target), {}, Eigen::Quaterniond::Identity(), {}});
+            objects_.push_back({std::move(target), {}, {}, Eigen::Quaterniond::Identity(), {}});
         order_.resize(objects_.size());
         if (std::any_of(objects_.begin(), objects_.end(), is_in_scene))
             scene_.emplace(ShapeDetector::create(camera).value());  // its defaults are sound
@@ -54,14 +55,17 @@ public:
     }
 
     void reset() override {
-        for (auto& object : objects_)
+        for (auto& object : objects_) {
             object.memory.forget();
+            object.wander = {};
+        }
     }
 
 private:
     struct Object {
         ShapeTarget target;
         ShapeMemory memory;
+        PlaneWander wander;
         Eigen::Quaterniond q_cam_obj = Eigen::Quaterniond::Identity();
         TrackSample sample;
     };
@@ -172,6 +176,8 @@ private:
         sample.p_cam = fit.shape.point;
         sample.covariance = fit.covariance;
         sample.quality = fit.quality;
+        if (fit.shape.kind == ShapeKind::plane && is_in_scene(object))
+            sample.covariance.topLeftCorner<3, 3>() += wander_of(object, fit, t);
         if (fit.size_u > 0.0) {  // else it was known, or the shape has none
             const bool cone = fit.shape.kind == ShapeKind::cone;
             (cone ? sample.size.half_angle_rad : sample.size.radius_m) = fit.shape.size;
@@ -185,6 +191,16 @@ private:
         }
         object.q_cam_obj = sample.q_cam_obj;
         object.memory.observe(sighting_of(fit, t));
+    }
+
+    Eigen::Matrix3d wander_of(Object& object, const ShapeFit& fit, TimeNs t) const {
+        const Eigen::Vector3d& middle = fit.shape.point;
+        const Eigen::Vector3d& normal = fit.shape.axis;
+        const double slant = std::max(0.1, std::abs(normal.dot(middle.normalized())));
+        const double area = fit.quality.points * middle.z() * middle.z() /
+                            (camera_.depth.fx * camera_.depth.fy * slant);
+        return object.wander.variance(t, middle, normal, area) *
+               (Eigen::Matrix3d::Identity() - normal * normal.transpose());
     }
 
     struct Ranked {
