@@ -36,6 +36,8 @@ struct AnalysisConditions {
     double tilt_u_rad = 0.02;     ///< how well the lab frame's z is up, about each horizontal axis
     bool on_earth = true;         ///< false where a simulation took another g on purpose
     bool metric = true;           ///< false: positions are in pixels, of unknown size
+    std::optional<TimeNs> released{};  ///< by the trajectories' clock; none: not known
+    double released_u_s = 0.002;       ///< how well that moment is known
 };
 
 /// One object's measured and fitted motion at its samples' times, for plots and tables.

@@ -5,10 +5,10 @@
 
 #include "pipeline/analysis/methods.hpp"
 #include "pipeline/analysis/object_plots.hpp"
-#include "pipeline/analysis/path_budget.hpp"
 #include "pipeline/analysis/path_report.hpp"
 #include "pipeline/analysis/path_stretch.hpp"
 #include "pipeline/analysis/pendulum.hpp"
+#include "pipeline/analysis/projectile_measurements.hpp"
 #include "pipeline/analysis/projectile_model.hpp"
 
 namespace kinectlab {
@@ -17,21 +17,15 @@ namespace {
 using Eigen::Vector3d;
 using Eigen::VectorXd;
 
-constexpr std::size_t kFewest = 8;        // positions of a flight
-constexpr double kShortest = 0.15;        // s
-constexpr double kSlanted = 0.2;          // share of the fall's acceleration that may lie across
-constexpr double kDragUnknown = 0.05;     // 1/m: between a steel ball and one for table tennis
-constexpr double kSphereDrag = 0.47;      // coefficient of a smooth ball, Re 1e3 to 1e5 ...
-constexpr double kSphereDragU = 0.05;     // ... and how well that holds
-constexpr double kDensityUnknown = 1e-3;  // of air over the ball's: water's
+constexpr std::size_t kFewest = 8;     // positions of a flight
+constexpr double kShortest = 0.15;     // s
+constexpr double kSlanted = 0.2;       // share of the fall's acceleration that may lie across
+constexpr double kDragUnknown = 0.05;  // 1/m: between a steel ball and one for table tennis
+constexpr double kSphereDrag = 0.47;   // coefficient of a smooth ball, Re 1e3 to 1e5 ...
+constexpr double kSphereDragU = 0.05;  // ... and how well that holds
 constexpr double kEndShare = 0.03;
-
-struct Air {
-    double drag = 0.0;    ///< 1/m
-    double drag_u = 0.0;  ///< 0: exactly
-    std::optional<double> density_ratio;
-    bool drag_given = false;
-};
+constexpr double kLongestUnseen = 0.5;   // s of a flight before its first picture
+constexpr std::size_t kSeenResting = 3;  // positions before a flight that began after the release
 
 Air air_of(const AnalysisSettings& s, double length) {
     const double rho = s.at("air_density_kg_m3");
@@ -113,84 +107,6 @@ std::vector<PathParameter> start_at(
     return all;
 }
 
-double speed(const VectorXd& x) {
-    return flight_velocity(x).norm();
-}
-
-double horizontal_speed(const VectorXd& x) {
-    const Vector3d up = flight_up(x);
-    return (flight_velocity(x) - flight_velocity(x).dot(up) * up).norm();
-}
-
-double elevation(const VectorXd& x) {
-    return std::atan2(flight_velocity(x).dot(flight_up(x)), horizontal_speed(x));
-}
-
-void measure(
-    AnalysisOutcome& out,
-    const PathFit& fit,
-    const Air& air,
-    double duration,
-    const AnalysisConditions& conditions
-) {
-    const PathBudget budget(
-        fit, {{"camera tilt", {kFlightTiltX, kFlightTiltY}}, {"drag", {kFlightDrag}}}, conditions
-    );
-    const bool metric = conditions.metric;
-    if (metric) {
-        const double ratio = air.density_ratio.value_or(0.0);
-        const double lift = (1.0 + ratio / 2.0) / (1.0 - ratio);
-        std::vector<BudgetLine> more;
-        if (!air.density_ratio) {
-            more.push_back({"buoyancy", 1.5 * kDensityUnknown * fit.parameters[kFlightG]});
-            out.notes.emplace_back(
-                "The ball's density was not given: the air's buoyancy, 0.15 % of g for a ball as "
-                "dense as water, is not corrected but stands in the budget."
-            );
-        }
-        out.measurements.push_back(budget.measure(
-            "g", "m/s²", [=](const VectorXd& x) { return lift * x[kFlightG]; }, {1, -2}, more
-        ));
-        const Measurement v = budget.measure("launch_speed", "m/s", speed, {1, -1});
-        if (v.value > 4.0 * v.u)
-            out.measurements.push_back(v);
-        else
-            out.notes.push_back(fmt::format(
-                "It was released from rest, to {:.0f} mm/s: there is no launch speed to tell.",
-                1e3 * (v.value + v.u)
-            ));
-    }
-    const Measurement across = budget.measure("", "", horizontal_speed, {1, -1});
-    if (across.value > 5.0 * across.u)
-        out.measurements.push_back(budget.measure("elevation", "rad", elevation, {}));
-    else
-        out.notes.emplace_back(
-            "It flew straight up or down: the elevation angle is not told apart from 90°."
-        );
-    const Measurement drag =
-        budget.measure("drag", "1/m", [](const VectorXd& x) { return x[kFlightDrag]; }, {-1, 0});
-    const bool shown = drag.u < 0.5 * air.drag_u || (air.drag_given && air.drag_u > 0.0);
-    if (metric && shown)
-        out.measurements.push_back(drag);
-    else if (air.drag_u > 0.0)
-        out.notes.emplace_back(
-            "The drag does not show in this flight and was not given; what it may be is the line "
-            "\"drag\". Give ball_density_kg_m3 and ball_radius_m, or throw farther."
-        );
-    const FlightTop top = flight_top(fit.parameters);
-    const Measurement rising = budget.measure(
-        "", "", [](const VectorXd& x) { return flight_velocity(x).dot(flight_up(x)); }, {1, -1}
-    );
-    if (rising.value < 5.0 * rising.u || top.time > duration) return;
-    if (metric)
-        out.measurements.push_back(budget.measure(
-            "rise", "m", [](const VectorXd& x) { return flight_top(x).rise; }, {1, 0}
-        ));
-    out.measurements.push_back(budget.measure(
-        "time_to_top", "s", [](const VectorXd& x) { return flight_top(x).time; }, {0, 1}
-    ));
-}
-
 void warn(AnalysisOutcome& out, const PathFit& fit, const AnalysisConditions& conditions) {
     const VectorXd& x = fit.parameters;
     const double lean = std::hypot(x[kFlightTiltX], x[kFlightTiltY]);
@@ -214,6 +130,23 @@ void warn(AnalysisOutcome& out, const PathFit& fit, const AnalysisConditions& co
             kLeastOnEarth,
             kMostOnEarth
         ));
+}
+
+/// When the flight began: at the release, although its first pictures may be missing; where the
+/// ball was seen before it flew, with the first position of the flight.
+double start_of(
+    const Trajectory& trajectory,
+    std::span<const PositionSample> samples,
+    const Stretch& flight,
+    const AnalysisConditions& conditions
+) {
+    const double first_seen = samples[flight.begin].t;
+    if (!conditions.released || flight.begin >= kSeenResting) return first_seen;
+    const double released =
+        static_cast<double>(*conditions.released - trajectory.samples.front().t) /
+        static_cast<double>(kNsPerSecond);
+    const double unseen = first_seen - released;
+    return unseen >= 0.0 && unseen < kLongestUnseen ? released : first_seen;
 }
 
 Result<AnalysisOutcome> run(
@@ -248,7 +181,7 @@ Result<AnalysisOutcome> run(
     };
     Stretch stretch = grow_stretch(samples, found->flight.samples, predict, 4);
     stretch = without_ends(samples, stretch, kEndShare, 2);
-    const double begin = samples[stretch.begin].t;
+    const double begin = start_of(trajectory, samples, stretch, conditions);
     auto moved = found->flight;
     moved.p += (begin - t0) * (moved.v + (begin - t0) / 2 * moved.a);
     moved.v += (begin - t0) * moved.a;
@@ -267,7 +200,15 @@ Result<AnalysisOutcome> run(
             return s.end <= stretch.begin + 2 || s.begin + 2 >= stretch.end;
         });
     out.facts["flights"] = static_cast<double>(others + 1);
-    measure(out, *fit, air, out.facts["duration_s"], conditions);
+    const double unseen = samples[stretch.begin].t - begin;
+    measure_projectile(
+        out,
+        *fit,
+        air,
+        out.facts["duration_s"] + unseen,
+        begin != samples[stretch.begin].t,
+        conditions
+    );
     out.warnings = stretch_warnings(samples, stretch, *fit, "a free flight", conditions.metric);
     warn(out, *fit, conditions);
     if (others > 0)

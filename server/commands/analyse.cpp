@@ -197,11 +197,12 @@ int analyse(int argc, char** argv) {
             : from_recording(arguments.recording, *definition, *values);
     if (!material) return report(material.error());
     material->provenance.program_version = config::version();
-    const auto free =
-        since(material->trajectories, experiments::recorded_release(arguments.recording));
+    const auto released = experiments::recorded_release(arguments.recording);
+    const auto free = since(material->trajectories, released);
     auto conditions = conditions_of(
         material->provenance.camera, experiments::recorded_truth(*definition, arguments.recording)
     );
+    conditions.released = released;
     if (is_table(arguments.recording)) {
         conditions.metric = !layout->pixels;
         conditions.tilt_u_rad = kHandHeldTilt;

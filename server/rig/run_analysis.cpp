@@ -30,6 +30,7 @@ AnalysisConditions conditions_of(const lab::Run& run) {
     AnalysisConditions conditions;
     // Only a simulated rig has it as a parameter.
     const auto gravity = run.parameters.find("gravity");
+    conditions.released = run.started;
     conditions.on_earth = gravity == run.parameters.end() || is_earthly(gravity->second);
     return conditions;
 }

@@ -50,6 +50,28 @@ TEST(Projectile, TellsGAndTheLaunchOfAThrow) {
     }
 }
 
+/// A machine that was busy has lost the first pictures.
+TEST(Projectile, TheLaunchIsAtTheReleaseThoughItsPicturesAreMissing) {
+    auto trajectory = record(1.4, thrown({1.5, 0.0, 3.0}), 3);
+    const TimeNs released = trajectory.samples.front().t + from_seconds(kRelease);
+    std::erase_if(trajectory.samples, [&](const MotionSample& sample) {
+        return sample.t < released + from_seconds(0.12);
+    });
+    AnalysisConditions conditions;
+    const auto later = analyse("projectile", {&trajectory, 1}, kVacuum, conditions);
+    conditions.released = released;
+    const auto out = analyse("projectile", {&trajectory, 1}, kVacuum, conditions);
+    ASSERT_TRUE(out && later);
+    const Measurement& speed = named(*out, "launch_speed");
+    EXPECT_NEAR(speed.value, std::hypot(1.5, 3.0), 3.0 * speed.u);
+    EXPECT_LT(named(*later, "launch_speed").value, speed.value - 0.8);
+    const Measurement& elevation = named(*out, "elevation");
+    EXPECT_NEAR(elevation.value, std::atan2(3.0, 1.5), 3.0 * elevation.u);
+    EXPECT_NEAR(line(elevation, "moment of release"), 1.5 * 9.81 / 11.25 * 0.002, 2e-4);
+    EXPECT_NEAR(named(*out, "time_to_top").value, 3.0 / 9.81, 0.01);
+    expect_adds_up(*out);
+}
+
 TEST(Projectile, ReleasedFromRestHasNoLaunch) {
     const auto out = analysed("projectile", record(1.05, thrown(Vector3d::Zero())), kVacuum);
     ASSERT_TRUE(out) << to_text(out.error());
