@@ -24,7 +24,7 @@ TimeNs ClockMap::map(std::uint64_t device_us, TimeNs arrival) {
     if (device - *start_ < kWarmUp) {
         target_ = std::min(target_, difference);
         offset_ = static_cast<double>(target_ - base_);
-    } else {
+    } else if (!held_) {
         const double step = static_cast<double>(device - previous_device_) / kTimeConstantNs;
         offset_ += std::clamp(step, 0.0, 1.0) * (static_cast<double>(target_ - base_) - offset_);
     }
@@ -32,7 +32,7 @@ TimeNs ClockMap::map(std::uint64_t device_us, TimeNs arrival) {
     if (device - block_start_ >= kBlock) {
         const TimeNs jump = block_minimum_ - target_;
         if (jump > -kClockWasSet) target_ = block_minimum_;
-        if (jump > kClockWasSet) offset_ = static_cast<double>(target_ - base_);
+        if (jump > kClockWasSet && !held_) offset_ = static_cast<double>(target_ - base_);
         block_start_ = device;
         block_minimum_ = std::numeric_limits<TimeNs>::max();
     }

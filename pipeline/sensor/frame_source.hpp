@@ -43,6 +43,10 @@ public:
     [[nodiscard]] virtual Result<FrameStatus> next(
         RgbdFrame& frame, std::chrono::milliseconds timeout
     ) = 0;
+
+    /// While held, a live device's times go on at its own clock's rate, and do not follow the
+    /// computer's: a correction would bend what is measured. Recordings have but one clock.
+    virtual void hold_clock(bool held) { static_cast<void>(held); }
 };
 
 }  // namespace kinectlab

@@ -81,6 +81,16 @@ public:
         return device_ && device_->get_property(id, data);
     }
 
+    void hold_clock(bool held) override {
+        clock_held_ = held;
+        clock_.hold(held);
+    }
+
+    std::optional<TimeNs> utc_of(double device_s) const override {
+        if (!clock_.is_set() || !(device_s >= 0.0)) return std::nullopt;
+        return clock_.peek(static_cast<std::uint64_t>(std::llround(1e6 * device_s)));
+    }
+
 private:
     void take_depth() {
         const auto stamp = device_->depth_stamp();
@@ -158,6 +168,7 @@ private:
                 continue;
             }
             clock_ = ClockMap(last_t_);
+            clock_.hold(clock_held_);
             index_base_.reset();
             last_device_us_.reset();
             last_depth_ = Clock::now();
@@ -174,6 +185,7 @@ private:
     TimeNs half_period_ = 0;
 
     ClockMap clock_;
+    bool clock_held_ = false;
     RgbdFrame pending_;  ///< a depth picture that waits for its colour picture
     std::uint64_t pending_stamp_us_ = 0;
     bool waiting_ = false;

@@ -25,6 +25,10 @@ public:
     /// `data` is the property's plain struct; false if the device is gone or refuses the value.
     [[nodiscard]] virtual bool set_property(int id, std::span<const std::byte> data) = 0;
     [[nodiscard]] virtual bool get_property(int id, std::span<std::byte> data) = 0;
+
+    /// A moment by the device's clock as the frames tell it; none before the first frame. For the
+    /// thread that calls next().
+    [[nodiscard]] virtual std::optional<TimeNs> utc_of(double device_s) const = 0;
 };
 
 /// URIs of the devices that OpenNI2 sees now.

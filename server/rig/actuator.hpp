@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 
 #include "pipeline/core/error.hpp"
@@ -16,6 +17,8 @@ struct ActuatorState {
     /// What displace() sets, as it is now: for a pendulum the angle between the string and the
     /// vertical, rad.
     double value = 0.0;
+    /// Since when it moves so, UTC by the frames' clock; none where the device does not know.
+    std::optional<TimeNs> since{};
 };
 
 /// Moves the apparatus of one rig. A command that returns was sent, not obeyed: whoever gives one

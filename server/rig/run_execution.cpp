@@ -44,6 +44,8 @@ void RunExecution::act_on_changes(TimeNs now) {
 void RunExecution::enter(RunState state, TimeNs now) {
     entered_ = state;
     entered_at_ = now;
+    const bool counts = state == RunState::releasing || state == RunState::measuring;
+    rig_.device.source->hold_clock(counts);
     switch (state) {
         case RunState::preparing:
             if (auto begun = begin_preparation(); !begun) fail_run(now, begun.error());
@@ -173,7 +175,11 @@ void RunExecution::await_release(TimeNs now) {
     const auto state = rig_.device.actuator->state();
     if (!state) return fail_run(now, state.error());
     if (state->motion == ApparatusMotion::free) {
-        advance(RunEvent::released, now, "The actuator let the bob go");
+        // Seen only with the next frame, which on a busy machine comes late; and a device may tell
+        // the time of the frame that it is about to take.
+        const bool told = state->since && *state->since <= now + kNsPerSecond &&
+                          *state->since > entered_at_ - kNsPerSecond;
+        advance(RunEvent::released, told ? *state->since : now, "The actuator let the bob go");
     } else if (now - entered_at_ > limits_.release_echo) {
         fail_run(
             now,

@@ -53,7 +53,8 @@ public:
         if (!source_.get_property(sim::kState, std::as_writable_bytes(std::span(&state, 1)))) {
             return fail(ErrorCode::unavailable, "actuator", "the device does not tell its state");
         }
-        return ActuatorState{to_motion(state.motion), state.value};
+        return ActuatorState{
+            to_motion(state.motion), state.value, source_.utc_of(state.motion_since_s)};
     }
 
 private:

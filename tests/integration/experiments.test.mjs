@@ -23,12 +23,14 @@ async function runOf(client, rig, experiment, parameters) {
 
 // What the simulated rig was told, and how far the result may be off beside five of its uncertainties. A loaded machine
 // loses frames, which the uncertainties know.
+// Half a metre straight at 0.15 m/s, then an arc of at most 0.14 m radius at 60° a second.
+const robotSpeed = (0.5 + (6 - 0.5 / 0.15) * 0.14 * (Math.PI / 3)) / 6;
 const truths = [
   ['projectile', { speed_m_s: 2, elevation_deg: 60, duration_s: 3 }, { g: 9.81, launch_speed: 2 }],
   ['incline', { incline_deg: 6, duration_s: 4 }, { g: 9.81, angle: (6 * Math.PI) / 180, acceleration: (5 / 7) * 9.81 * Math.sin((6 * Math.PI) / 180) }],
   ['spring', { duration_s: 8, damping_per_s: 0.1 }, { angular_frequency: Math.sqrt(10 / 0.25 - 0.01), damping: 0.1 }],
   ['collision', { duration_s: 4, restitution: 0.7 }, { momentum_balance: 0, restitution: 0.7 }],
-  ['robot', { duration_s: 6 }, { mean_speed: 0.15 }],
+  ['robot', { duration_s: 6 }, { mean_speed: robotSpeed }],
   ['tumbler', { duration_s: 6 }, { rate: (Math.hypot(10, 60, 5) * Math.PI) / 180 }],
   ['foucault', { duration_s: 15 }, { g: 9.81 }],
 ];

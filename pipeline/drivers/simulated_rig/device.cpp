@@ -166,11 +166,12 @@ OniStatus Device::set_fault(const void* data, int size) {
 }
 
 RigState Device::state() const {
-    const simulate::Truth truth = rig_.truth();
+    const auto [truth, motion_since_s] = rig_.seen();
     RigState state;
     state.motion = static_cast<Motion>(truth.motion);
     state.device_time_s = truth.t_s;
     state.value = truth.value;
+    state.motion_since_s = motion_since_s;
     const std::size_t count = std::min(truth.bodies.size(), std::size(state.bodies));
     state.body_count = static_cast<std::int32_t>(count);
     for (std::size_t i = 0; i < count; ++i)

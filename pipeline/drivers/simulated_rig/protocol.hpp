@@ -48,7 +48,8 @@ struct RigState {
     Motion motion = Motion::at_rest;
     std::int32_t body_count = 0;
     double device_time_s = 0.0;
-    double value = 0.0;  ///< of what displace sets, as it is now
+    double value = 0.0;           ///< of what displace sets, as it is now
+    double motion_since_s = 0.0;  ///< device time from which on it moves so
     BodyState bodies[4];
 };
 

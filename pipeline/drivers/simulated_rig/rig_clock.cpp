@@ -21,7 +21,7 @@ RigClock::RigClock(simulate::RigSettings settings, Watched watched, Deliver deli
       rig_(std::move(*simulate::SimulatedRig::create(settings))) {
     camera_ = rig_.camera();
     T_lab_cam_ = rig_.T_lab_cam();
-    truth_ = rig_.truth();
+    seen_.truth = rig_.truth();
     thread_ = std::thread([this] { run(); });
 }
 
@@ -77,9 +77,9 @@ void RigClock::set_fault(FaultKind kind, std::chrono::duration<double> lasting) 
     fault_end_ = Clock::now() + std::chrono::duration_cast<Clock::duration>(lasting);
 }
 
-simulate::Truth RigClock::truth() const {
+RigClock::Seen RigClock::seen() const {
     const std::lock_guard lock(state_mutex_);
-    return truth_;
+    return seen_;
 }
 
 FaultKind RigClock::fault() const {
@@ -102,7 +102,8 @@ bool RigClock::wait_until(Clock::time_point due) {
 void RigClock::publish_truth() {
     const simulate::Truth newest = rig_.truth();
     const std::lock_guard lock(state_mutex_);
-    truth_ = newest;
+    if (newest.motion != seen_.truth.motion) seen_.motion_since_s = newest.t_s;
+    seen_.truth = newest;
 }
 
 void RigClock::run() {

@@ -42,10 +42,14 @@ public:
 
     void set_fault(FaultKind kind, std::chrono::duration<double> lasting);
 
+    struct Seen {
+        simulate::Truth truth;
+        double motion_since_s = 0.0;  ///< since when truth.motion is what it is
+    };
     /// Truth of the frame that was handed out last, or of the one that is ready to be when a
     /// command came in between; the command shows at once, so that nobody mistakes an old state for
     /// its effect.
-    [[nodiscard]] simulate::Truth truth() const;
+    [[nodiscard]] Seen seen() const;
 
     [[nodiscard]] const RgbdCamera& camera() const { return camera_; }
     [[nodiscard]] const Eigen::Isometry3d& T_lab_cam() const { return T_lab_cam_; }
@@ -75,7 +79,7 @@ private:
     mutable std::mutex state_mutex_;  ///< guards the rest; never held while rendering
     std::condition_variable stopping_changed_;
     bool stopping_ = false;
-    simulate::Truth truth_;
+    Seen seen_;
     FaultKind fault_ = FaultKind::none;
     Clock::time_point fault_end_;
 

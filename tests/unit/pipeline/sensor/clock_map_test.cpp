@@ -48,6 +48,29 @@ TEST(ClockMap, LateReadingsDoNotMoveTheTimes) {
     EXPECT_LT(largest_step_error, 3e-6);  // of 33 ms: the device's own microseconds
 }
 
+TEST(ClockMap, HeldItKeepsTheDevicesRateHoweverLateTheFirstReadingsWere) {
+    Device device;
+    ClockMap clock;
+    TimeNs first = 0, last = 0;
+    constexpr int kHeldFrom = 60, kEnd = 60 + 30 * 20;
+    for (int k = 0; k <= kEnd; ++k) {
+        auto reading = device.at(k);
+        if (k < 40) reading.arrival += 60'000'000;  // the computer was busy as it began
+        if (k == kHeldFrom) clock.hold(true);
+        last = clock.map(reading.device_us, reading.arrival);
+        if (k == kHeldFrom) first = last;
+    }
+    EXPECT_NEAR(to_seconds(last - first), 20.0, 2e-6);
+    clock.hold(false);
+    double nearest = 1.0;
+    for (int k = kEnd + 1; k < kEnd + 30 * 600; ++k) {
+        const auto reading = device.at(k);
+        const TimeNs t = clock.map(reading.device_us, reading.arrival);
+        nearest = std::abs(to_seconds(t - reading.true_utc - kTransfer));
+    }
+    EXPECT_LT(nearest, 2e-3);  // and then it finds back
+}
+
 TEST(ClockMap, FollowsAClockThatDrifts) {
     Device device;
     device.drift = 50e-6;

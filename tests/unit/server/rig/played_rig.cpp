@@ -62,7 +62,8 @@ public:
     }
     Result<rig::ActuatorState> state() override {
         const simulate::Truth truth = rig_.truth();
-        return rig::ActuatorState{static_cast<rig::ApparatusMotion>(truth.motion), truth.value};
+        return rig::ActuatorState{
+            static_cast<rig::ApparatusMotion>(truth.motion), truth.value, rig_.since};
     }
 
 private:

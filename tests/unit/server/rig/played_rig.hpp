@@ -26,6 +26,8 @@ struct PlayedRig {
     FrameStatus status = FrameStatus::frame;
     std::uint64_t skip = 0;  ///< frames to lose before the next
 
+    std::optional<TimeNs> since;  ///< what the actuator says of its motion's beginning
+
     std::uint64_t index = 0;
     int stops = 0;  ///< how often the bob was told to stop
 

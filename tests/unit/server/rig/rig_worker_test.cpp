@@ -182,6 +182,27 @@ TEST_F(RigWorkerTest, TheBobIsHeldAtItsAngleWhenTheRunIsReady) {
     EXPECT_EQ(worker_.status().current_run, run_);
 }
 
+TEST_F(RigWorkerTest, TheReleaseIsWhenTheActuatorSaysItWas) {
+    start();
+    ASSERT_TRUE(step_until_state(RunState::ready));
+    const TimeNs let_go = rig_.now() + 5'000'000;
+    rig_.since = let_go;
+    play(0.1);
+    ASSERT_TRUE(command(RunEvent::release_commanded));
+    ASSERT_TRUE(step_until_state(RunState::measuring));
+    EXPECT_EQ(run().started, let_go);
+}
+
+TEST_F(RigWorkerTest, AReleaseThatCannotBeIsNotBelieved) {
+    start();
+    ASSERT_TRUE(step_until_state(RunState::ready));
+    rig_.since = rig_.now() - kMinute;
+    const TimeNs commanded = rig_.now();
+    ASSERT_TRUE(command(RunEvent::release_commanded));
+    ASSERT_TRUE(step_until_state(RunState::measuring));
+    EXPECT_GE(run().started.value(), commanded);
+}
+
 TEST_F(RigWorkerTest, MeasuresForItsDuration) {
     start_measuring(2.0);
     ASSERT_TRUE(step_until([&] { return run().state != RunState::measuring; }));
