@@ -50,13 +50,21 @@ void warn_of_damaged_colour(const std::filesystem::path& path) {
 /// What the readings of a recording are, to tell why nothing may have been found in them.
 class Readings {
 public:
+    /// Counting how far they are takes its time in every frame; only smoothing asks for it.
+    explicit Readings(bool counted) : counted_(counted) {}
+
     void add(const RgbdFrame& frame) {
+        const auto is_reading = [](std::uint16_t counts) {
+            return counts != 0;
+        };
+        any_ = any_ || std::any_of(frame.depth.begin(), frame.depth.end(), is_reading);
+        if (!counted_) return;
         for (const std::uint16_t counts : frame.depth)
             ++seen_[counts];
     }
 
     void warn_if_none(const std::string& name) const {
-        if (readings() > 0) return;
+        if (any_) return;
         std::cerr << "warning: " << name
                   << ": no frame has a reading, so nothing can be found; see whether the depth "
                      "pictures are the right ones\n";
@@ -96,6 +104,8 @@ private:
         return sum;
     }
 
+    bool counted_;
+    bool any_ = false;
     std::vector<std::size_t> seen_ = std::vector<std::size_t>(65536);
 };
 
@@ -207,7 +217,7 @@ Result<TrackedRecording> track_recording(const std::filesystem::path& path, Trac
     source->reset();  // an .oni file has one player, which must start anew
     auto again = open_recording(path, options);
     if (!again) return forward(again);
-    Readings readings;
+    Readings readings(recording.preprocess.smoothing.has_value());
     if (auto tracked = track_all(**again, *chain, recording, readings); !tracked)
         return forward(tracked);
     readings.warn_if_none(recording.source.name);
