@@ -193,7 +193,7 @@ std::vector<ThingSamples> by_identity(const std::vector<TrackSample>& samples) {
 
 Result<TrackedRecording> track_recording(const std::filesystem::path& path, TrackingPlan plan) {
     const bool with_colour = std::any_of(plan.objects.begin(), plan.objects.end(), needs_colour);
-    const RecordingOptions options{.with_colour = with_colour};
+    const RecordingOptions options{.with_colour = with_colour, .ahead = true};
     auto source = open_recording(path, options);
     if (!source) return forward(source);
     warn_of_unknown_camera(path);
