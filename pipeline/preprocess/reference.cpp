@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 
 #include "pipeline/core/hot_loop.hpp"
+#include "pipeline/core/marks.hpp"
 
 namespace kinectlab {
 namespace {
@@ -55,20 +55,6 @@ KINECTLAB_HOT_LOOP void mark_uncovered(
         // Without a reading this is infinitely near, and so not marked.
         const float farther = product / counts < disparity[i] - kNearSpreadSteps ? 1.0F : 0.0F;
         unusual[i] = static_cast<std::uint8_t>(static_cast<int>(farther));
-    }
-}
-
-/// Calls `act` with the index of each mark; nearly all of them are 0.
-template <class Act>
-void for_each_marked(std::span<const std::uint8_t> marks, Act act) {
-    for (std::size_t k = 0; k < marks.size(); ++k) {
-        std::uint64_t eight = 1;
-        if (k + 8 <= marks.size()) std::memcpy(&eight, marks.data() + k, 8);
-        if (eight == 0) {
-            k += 7;
-        } else if (marks[k] != 0) {
-            act(k);
-        }
     }
 }
 
