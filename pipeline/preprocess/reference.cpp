@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 
 #include "pipeline/core/hot_loop.hpp"
+#include "pipeline/core/marks.hpp"
 
 namespace kinectlab {
 namespace {
@@ -39,6 +39,22 @@ KINECTLAB_HOT_LOOP void follow_drift(Strip strip, float product, float sigma, fl
         // Nearer than a reference: an object, nothing to learn from.
         const float farther = deviation < -band ? 1.0F : 0.0F;
         unusual[i] = static_cast<std::uint8_t>(static_cast<int>(reference > 0.0F ? farther : 1.0F));
+    }
+}
+
+/// Marks the readings that are farther than the reference by more than the spread.
+KINECTLAB_HOT_LOOP void mark_uncovered(
+    const std::uint16_t* __restrict depth,
+    const float* __restrict disparity,
+    std::uint8_t* __restrict unusual,
+    std::size_t size,
+    float product
+) {
+    for (std::size_t i = 0; i < size; ++i) {
+        const auto counts = static_cast<float>(depth[i]);
+        // Without a reading this is infinitely near, and so not marked.
+        const float farther = product / counts < disparity[i] - kNearSpreadSteps ? 1.0F : 0.0F;
+        unusual[i] = static_cast<std::uint8_t>(static_cast<int>(farther));
     }
 }
 
@@ -108,11 +124,17 @@ void ReferenceScene::learn_pixel(std::size_t i, float s) {
 
 void ReferenceScene::uncover(std::span<const std::uint16_t> depth) {
     const auto product = static_cast<float>(scale_.product);
-    for (std::size_t i = 0; i < depth.size(); ++i) {
-        if (depth[i] == 0 || seen_[i] == 0) continue;
-        const float s = product / static_cast<float>(depth[i]);
-        if (s >= disparity_[i] - kNearSpreadSteps) continue;
-        if (note_candidate(i, s, band(s))) adopt(i, candidate_[i], hits_[i]);
+    for (std::size_t first = 0; first < depth.size(); first += unusual_.size()) {
+        const std::size_t size = std::min(unusual_.size(), depth.size() - first);
+        mark_uncovered(
+            depth.data() + first, disparity_.data() + first, unusual_.data(), size, product
+        );
+        for_each_marked(std::span(unusual_).first(size), [&](std::size_t k) {
+            const std::size_t i = first + k;
+            if (seen_[i] == 0) return;
+            const float s = product / static_cast<float>(depth[i]);
+            if (note_candidate(i, s, band(s))) adopt(i, candidate_[i], hits_[i]);
+        });
     }
 }
 
@@ -128,15 +150,9 @@ RowRange ReferenceScene::follow(std::span<const std::uint16_t> depth) {
         sigma_,
         rounding_
     );
-    for (std::size_t k = 0; k < size; ++k) {
-        std::uint64_t eight = 1;
-        if (k + 8 <= size) std::memcpy(&eight, unusual_.data() + k, 8);
-        if (eight == 0) {
-            k += 7;
-        } else if (unusual_[k] != 0) {
-            follow_unusual(first + k, depth[first + k]);
-        }
-    }
+    for_each_marked(std::span(unusual_).first(size), [&](std::size_t k) {
+        follow_unusual(first + k, depth[first + k]);
+    });
     return rows;
 }
 

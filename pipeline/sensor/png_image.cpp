@@ -7,8 +7,10 @@
 #include <memory>
 #include <stdexcept>
 
+#include <libdeflate.h>
 #include <spng.h>
-#include <zlib.h>
+
+#include "pipeline/sensor/plain_depth_png.hpp"
 
 namespace kinectlab {
 namespace {
@@ -122,8 +124,7 @@ Result<void> check_png(std::span<const std::uint8_t> file, const std::string& na
         const std::size_t length = big_endian(rest);
         if (length > rest.size() - 12) break;
         const auto kind_and_data = rest.subspan(4, length + 4);
-        const auto crc =
-            crc32_z(crc32_z(0, nullptr, 0), kind_and_data.data(), kind_and_data.size());
+        const auto crc = libdeflate_crc32(0, kind_and_data.data(), kind_and_data.size());
         if (crc != big_endian(rest.subspan(length + 8)))
             return bad("is damaged: a checksum is wrong");
         if (std::memcmp(kind_and_data.data(), "IEND", 4) == 0) return {};
@@ -168,6 +169,7 @@ Result<PngSize> read_png_size(
 Result<void> decode_png(
     std::span<const std::uint8_t> file, std::span<std::uint16_t> depth, const std::string& name
 ) {
+    if (read_plain_depth_png(file, depth)) return {};
     const std::span<std::uint8_t> out(
         reinterpret_cast<std::uint8_t*>(depth.data()), depth.size_bytes()
     );

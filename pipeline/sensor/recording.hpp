@@ -9,6 +9,9 @@ namespace kinectlab {
 
 struct RecordingOptions {
     bool with_colour = true;  ///< false leaves RgbdFrame::rgb empty, where that saves decoding it
+    /// Frames are decoded ahead by a second thread (read_ahead.hpp), for who goes through many. Not
+    /// those of an .oni file: its player has a thread already.
+    bool ahead = false;
 };
 
 /// Opens whatever a recording may be: a folder in the TUM RGB-D layout (depth.txt, rgb.txt, depth/,

@@ -4,6 +4,9 @@
 #include <cmath>
 #include <utility>
 
+#include "pipeline/core/hot_loop.hpp"
+#include "pipeline/core/marks.hpp"
+
 namespace kinectlab {
 namespace {
 
@@ -15,13 +18,37 @@ constexpr double kMaxRmsSigmas = 3.0;
 constexpr double kMinInlierShare = 0.9;  // less where a fit slid from one face to the next
 constexpr double kMostTurnU = 0.02;      // rad; planes through a strip of pixels may be turned more
 
+constexpr std::uint8_t kNear = 1, kKept = 2;  // in near_
+
+struct Row {
+    const float* disparity;
+    std::uint8_t* near;
+    int size;
+};
+
+/// Marks what is nearer than the gate to a plane's disparity, which changes by so much a column.
+KINECTLAB_HOT_LOOP void mark_near(Row row, float first, float per_column, float gate) {
+    const float* __restrict disparity = row.disparity;
+    std::uint8_t* __restrict near = row.near;
+    for (int u = 0; u < row.size; ++u) {
+        const float off = disparity[u] - (first + per_column * static_cast<float>(u));
+        const float there = disparity[u] > 0.0F ? 1.0F : 0.0F;
+        const float is_near = std::abs(off) < gate ? there : 0.0F;
+        near[u] = static_cast<std::uint8_t>(static_cast<int>(is_near));
+    }
+}
+
 }  // namespace
 
 PlaneRegion::PlaneRegion(const RgbdCamera& camera)
-    : camera_(camera), scale_(camera), fitter_(camera) {
-    const auto pixels = static_cast<std::size_t>(camera.depth.width * camera.depth.height);
+    : camera_(camera),
+      scale_(camera),
+      fitter_(camera),
+      width_(static_cast<std::uint32_t>(camera.depth.width)),
+      height_(static_cast<std::uint32_t>(camera.depth.height)) {
+    const auto pixels = static_cast<std::size_t>(width_) * height_;
     region_.resize(pixels);
-    near_.resize(pixels);
+    near_.resize(std::size_t{near_at(height_ + 1)});
     growing_.resize(pixels);
 }
 
@@ -34,14 +61,10 @@ void PlaneRegion::find_near(const DisparityImage& image, const Shape& plane) {
     // The noise grows with the rounding of near readings only, so one bound does for a picture.
     const double s_here = scale_.steps_at(std::max(0.1, plane.point.z()));
     const auto gate = static_cast<float>(kNearSigmas * scale_.sigma_at(s_here));
-    std::uint8_t* near = near_.data();
-    for (int v = 0; v < view.height; ++v, near += view.width) {
-        const float* row = image.row(v);
-        const auto first = static_cast<float>(m.dot(view.ray(0, v)));
-        for (int u = 0; u < view.width; ++u) {
-            const float off = row[u] - (first + per_column * static_cast<float>(u));
-            near[u] = static_cast<std::uint8_t>((row[u] > 0.0F) & (std::abs(off) < gate));
-        }
+    for (std::uint32_t v = 0; v < height_; ++v) {
+        const Row row{image.row(static_cast<int>(v)), near_.data() + near_at(v), view.width};
+        const auto first = static_cast<float>(m.dot(view.ray(0, static_cast<int>(v))));
+        mark_near(row, first, per_column, gate);
     }
 }
 
@@ -50,23 +73,30 @@ void PlaneRegion::find_near(const DisparityImage& image, const Shape& plane) {
 /// steeply that it leaps from row to row would not pass it.
 void PlaneRegion::keep_connected(const std::vector<std::uint8_t>& known) {
     kept_.clear();
-    const auto size = static_cast<std::uint32_t>(near_.size());
-    const auto width = static_cast<std::uint32_t>(camera_.depth.width);
-    const auto visit = [&](std::uint32_t pixel) {
-        if (near_[pixel] == 0) return;
-        near_[pixel] = 0;
-        kept_.push_back(pixel);
+    const auto visit = [&](std::uint32_t at) {
+        if (near_[at] != kNear) return;
+        near_[at] = kKept;
+        kept_.push_back(at);
     };
-    for (std::uint32_t start = 0; start < size; ++start)
-        if (known[start] != 0) visit(start);
+    for (std::uint32_t v = 0; v < height_; ++v)
+        for_each_marked(std::span(known).subspan(std::size_t{v} * width_, width_), [&](auto u) {
+            visit(near_at(v) + static_cast<std::uint32_t>(u));
+        });
+    const std::uint32_t stride = near_at(1) - near_at(0);
     for (std::size_t next = 0; next < kept_.size(); ++next) {
-        const std::uint32_t at = kept_[next], column = at % width;
-        if (column > 0) visit(at - 1);
-        if (column + 1 < width) visit(at + 1);
-        if (at >= width) visit(at - width);
-        if (at + width < size) visit(at + width);
+        const std::uint32_t at = kept_[next];
+        visit(at - 1);
+        visit(at + 1);
+        visit(at - stride);
+        visit(at + stride);
     }
-    std::sort(kept_.begin(), kept_.end());
+    kept_.clear();  // from here on pixels of the picture, in reading order
+    for (std::uint32_t v = 0; v < height_; ++v) {
+        const auto row = std::span(near_).subspan(near_at(v), width_);
+        for_each_marked(row, [&](auto u) {
+            if (row[u] == kKept) kept_.push_back(v * width_ + static_cast<std::uint32_t>(u));
+        });
+    }
 }
 
 std::optional<ShapeFit> PlaneRegion::fit(const DisparityImage& image, const Shape& guess) {

@@ -35,9 +35,16 @@ private:
     void keep_connected(const std::vector<std::uint8_t>& known);
     [[nodiscard]] std::optional<ShapeFit> fit(const DisparityImage& image, const Shape& guess);
 
+    /// Where a row begins in near_: a column and a row about the picture stay 0, so that a pixel's
+    /// neighbours need no thought.
+    [[nodiscard]] std::uint32_t near_at(std::uint32_t row) const {
+        return (row + 1) * (width_ + 1) + 1;
+    }
+
     RgbdCamera camera_;
     DisparityScale scale_;
     ShapeFitter fitter_;
+    std::uint32_t width_, height_;
     std::optional<Shape> plane_;
     std::vector<std::uint8_t> region_;  ///< of plane_, a byte a pixel
     std::vector<std::uint8_t> near_, growing_;

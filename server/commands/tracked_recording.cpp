@@ -2,17 +2,16 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
+#include <future>
 #include <iostream>
-#include <limits>
 #include <map>
 
 #include "pipeline/motion/motion.hpp"
-#include "pipeline/preprocess/cleaner.hpp"
 #include "pipeline/run/chain.hpp"
-#include "pipeline/sensor/recording.hpp"
+#include "pipeline/sensor/rewindable_recording.hpp"
 #include "pipeline/sensor/tum_sequence.hpp"
 #include "server/commands/progress.hpp"
+#include "server/commands/readings.hpp"
 
 namespace kinectlab::commands {
 namespace {
@@ -38,66 +37,11 @@ void warn_of_unknown_camera(const std::filesystem::path& path) {
 }
 
 // Depth alone is sound and goes on; the damage is told, because a later run may want the colour.
-void warn_of_damaged_colour(const std::filesystem::path& path) {
-    std::error_code code;
-    if (!std::filesystem::exists(path / "depth.txt", code)) return;
-    const DamagedPictures found = check_colour_pictures(path);
+void warn_of_damaged_colour(const DamagedPictures& found) {
     if (found.damaged == 0) return;
     std::cerr << "warning: " << to_text(*found.first) << " (" << found.damaged << " of "
               << found.all << " colour pictures; nothing that is tracked here needs them)\n";
 }
-
-/// What the readings of a recording are, to tell why nothing may have been found in them.
-class Readings {
-public:
-    void add(const RgbdFrame& frame) {
-        for (const std::uint16_t counts : frame.depth)
-            ++seen_[counts];
-    }
-
-    void warn_if_none(const std::string& name) const {
-        if (readings() > 0) return;
-        std::cerr << "warning: " << name
-                  << ": no frame has a reading, so nothing can be found; see whether the depth "
-                     "pictures are the right ones\n";
-    }
-
-    void warn_of_smoothing(const RgbdCamera& camera, const MovingLeastSquaresSettings& smoothing)
-        const {
-        const double nearest_m = nearest_smoothed_m(camera, smoothing);
-        const std::size_t too_near = nearer_than(nearest_m / camera.depth_unit_m);
-        const auto percent = 100.0 * static_cast<double>(too_near) /
-                             static_cast<double>(std::max<std::size_t>(1, readings()));
-        if (percent < 1.0) return;
-        std::size_t first = 1;  // counts that all but a hundredth of the readings reach
-        while (first < seen_.size() && 100 * nearer_than(static_cast<double>(first)) < readings())
-            ++first;
-        const double most_m =
-            smoothing.radius_m * static_cast<double>(first - 1) * camera.depth_unit_m / nearest_m;
-        std::fprintf(
-            stderr,
-            "warning: preprocess.smoothing.radius_m: is %.3g m, which is more than %d pixels of "
-            "this camera nearer than %.2f m; %.0f %% of the readings are nearer and were left out; "
-            "give at most %.2g m for this recording\n",
-            smoothing.radius_m,
-            kMostPixels - 1,
-            nearest_m,
-            percent,
-            most_m
-        );
-    }
-
-private:
-    [[nodiscard]] std::size_t readings() const { return nearer_than(65536.0); }
-    [[nodiscard]] std::size_t nearer_than(double counts) const {
-        std::size_t sum = 0;
-        for (std::size_t i = 1; i < seen_.size() && static_cast<double>(i) < counts; ++i)
-            sum += seen_[i];
-        return sum;
-    }
-
-    std::vector<std::size_t> seen_ = std::vector<std::size_t>(65536);
-};
 
 // The scene is what the first frames show, and what later ones show behind an object that was at
 // rest there: its place may be hidden again in every frame that counts, as in a swing of a few
@@ -160,6 +104,31 @@ Result<void> track_all(
     }
 }
 
+Result<TrackedRecording> go_through(RewindableRecording& source, TrackingPlan plan) {
+    TrackedRecording recording;
+    recording.source = source.info();
+    recording.objects = std::move(plan.objects);
+    recording.preprocess = plan.preprocess;
+    recording.samples.resize(recording.objects.size());
+
+    ChainSettings settings;
+    settings.camera = recording.source.camera;
+    settings.objects = recording.objects;
+    settings.preprocess = recording.preprocess;
+    auto chain = Chain::create(settings);
+    if (!chain) return forward(chain);
+    if (auto learned = learn(source, *chain, recording.preprocess.reference); !learned)
+        return forward(learned);
+    recording.learned_frames = chain->learned_frames();
+
+    if (auto rewound = source.rewind(); !rewound) return forward(rewound);
+    Readings readings(recording.preprocess.smoothing);
+    if (auto tracked = track_all(source, *chain, recording, readings); !tracked)
+        return forward(tracked);
+    readings.warn(recording.source);
+    return recording;
+}
+
 /// What one thing among many did, from when it was first to when it was last seen.
 struct ThingSamples {
     std::uint32_t identity = 0;
@@ -183,36 +152,15 @@ std::vector<ThingSamples> by_identity(const std::vector<TrackSample>& samples) {
 
 Result<TrackedRecording> track_recording(const std::filesystem::path& path, TrackingPlan plan) {
     const bool with_colour = std::any_of(plan.objects.begin(), plan.objects.end(), needs_colour);
-    const RecordingOptions options{.with_colour = with_colour};
-    auto source = open_recording(path, options);
+    auto source = RewindableRecording::open(path, {.with_colour = with_colour, .ahead = true});
     if (!source) return forward(source);
     warn_of_unknown_camera(path);
-    if (!with_colour) warn_of_damaged_colour(path);
-    TrackedRecording recording;
-    recording.source = (*source)->info();
-    recording.objects = std::move(plan.objects);
-    recording.preprocess = plan.preprocess;
-    recording.samples.resize(recording.objects.size());
-
-    ChainSettings settings;
-    settings.camera = recording.source.camera;
-    settings.objects = recording.objects;
-    settings.preprocess = recording.preprocess;
-    auto chain = Chain::create(settings);
-    if (!chain) return forward(chain);
-    if (auto learned = learn(**source, *chain, recording.preprocess.reference); !learned)
-        return forward(learned);
-    recording.learned_frames = chain->learned_frames();
-
-    source->reset();  // an .oni file has one player, which must start anew
-    auto again = open_recording(path, options);
-    if (!again) return forward(again);
-    Readings readings;
-    if (auto tracked = track_all(**again, *chain, recording, readings); !tracked)
-        return forward(tracked);
-    readings.warn_if_none(recording.source.name);
-    if (const auto& smoothing = recording.preprocess.smoothing)
-        readings.warn_of_smoothing(recording.source.camera, *smoothing);
+    std::error_code code;
+    std::future<DamagedPictures> colour;  // found meanwhile: hundreds of megabytes are read for it
+    if (!with_colour && std::filesystem::exists(path / "depth.txt", code))
+        colour = std::async(std::launch::async, check_colour_pictures, path);
+    auto recording = go_through(**source, std::move(plan));
+    if (colour.valid()) warn_of_damaged_colour(colour.get());
     return recording;
 }
 

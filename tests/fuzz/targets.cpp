@@ -16,6 +16,7 @@
 #include "pipeline/sensor/recording.hpp"
 #include "server/experiments/objects_json.hpp"
 #include "server/experiments/strict_json.hpp"
+#include "tests/fuzz/png_targets.hpp"
 
 namespace kinectlab::fuzz {
 namespace {
@@ -192,6 +193,8 @@ std::vector<Target> all_targets() {
              return parse_stl(b, kName).has_value();
          }},
         {"png", {depth_png()}, read_png},
+        {"png_rows", {png_rows()}, read_png_rows},
+        {"png_data", {png_data()}, read_png_data},
         {"sequence",
          {bytes_of("# timestamp filename\n0.000000 depth/1.png\n0.033333 depth/2.png\n")},
          read_sequence},
