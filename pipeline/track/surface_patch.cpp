@@ -16,6 +16,7 @@ constexpr TimeNs kMemory = kNsPerSecond / 2;  // a place older than this says no
 constexpr double kOrientationSigma = 0.2;     // rad: less sure than this is not seen
 constexpr double kCertainTurn = 0.01;         // rad: a mesh's facets do not make it this sure
 constexpr double kTryTurn = 0.2;              // rad
+constexpr int kLongestRest = 31;              // frames, while nothing moves
 constexpr int kLongestPause = 7;              // frames
 
 /// What keeps an object that was seen a moment ago: less than it takes to recognise one.
@@ -198,7 +199,8 @@ private:
             return std::nullopt;
         }
         if (!fit) fit = target.recogniser->find(rest_);
-        target.last_pause = fit ? 0 : std::min(kLongestPause, 2 * target.last_pause + 1);
+        const int longest = moved.empty() ? kLongestRest : kLongestPause;
+        target.last_pause = fit ? 0 : std::min(longest, 2 * target.last_pause + 1);
         target.pause = target.last_pause;
         return fit;
     }
