@@ -30,6 +30,7 @@ struct Bend {
     Vector3d squares_left = Vector3d::Zero();
     Vector3d change = Vector3d::Zero();  // of the velocity
     double freedom = 0.0;
+    std::ptrdiff_t fewer = 0;  // samples on the side that has fewer
     bool known = false;
 };
 
@@ -93,6 +94,7 @@ Bend bend_at(std::span<const PositionSample> all, double t, double look) {
             std::max(fitted - right.col(axis).head<2>().dot(straight.col(axis)), 0.0);
     }
     bend.change = bent.row(2).transpose();
+    bend.fewer = std::min(middle - first, last - middle);
     bend.freedom = static_cast<double>(last - first) - 3.0;
     bend.known = bend.freedom > 0.0;
     return bend;
@@ -189,20 +191,26 @@ Result<Impact> find_impact(
     double best = 0.0;
     bool compared = false;
     Impact impact;
-    for (std::size_t i = 0; i < times.size(); ++i) {
-        const Bend& a = bends[0][i];
-        const Bend& b = bends[1][i];
-        if (!a.known || !b.known) continue;
-        compared = true;
-        if (a.change.dot(b.change) > kOpposite * a.change.norm() * b.change.norm()) continue;
-        const double bent = std::min(
-            a.squares_gained.cwiseQuotient(variance[0]).sum(),
-            b.squares_gained.cwiseQuotient(variance[1]).sum()
-        );
-        if (bent <= best) continue;
-        best = bent;
-        impact.t = times[i];
-    }
+    const auto look_for = [&](std::size_t fewest) {
+        for (std::size_t i = 0; i < times.size(); ++i) {
+            const Bend& a = bends[0][i];
+            const Bend& b = bends[1][i];
+            if (!a.known || !b.known) continue;
+            compared = true;
+            if (std::min(a.fewer, b.fewer) < static_cast<std::ptrdiff_t>(fewest)) continue;
+            if (a.change.dot(b.change) > kOpposite * a.change.norm() * b.change.norm()) continue;
+            const double bent = std::min(
+                a.squares_gained.cwiseQuotient(variance[0]).sum(),
+                b.squares_gained.cwiseQuotient(variance[1]).sum()
+            );
+            if (bent <= best) continue;
+            best = bent;
+            impact.t = times[i];
+        }
+    };
+    look_for(kFewestKept);
+    // Where a side has fewer slow noise bends as well, but a person is told where the impact was.
+    if (best < kClearBend) look_for(kFewest);
     if (!compared)
         return fail(
             ErrorCode::bad_data,
