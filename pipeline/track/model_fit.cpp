@@ -58,7 +58,7 @@ struct ModelFitter::Equations {
     Matrix6d surface = Matrix6d::Zero(), outline = Matrix6d::Zero();  ///< lower halves
     Vector6d gradient = Vector6d::Zero();
     double squares = 0.0, weights = 0.0;
-    std::size_t offered = 0, agree = 0, farther = 0;
+    std::size_t offered = 0, agree = 0, farther = 0, unread = 0;
     std::size_t outline_offered = 0, outline_found = 0;
     /// What a side of the outline would pull if all of it were a pixel further out.
     std::array<Vector6d, kSides> sides;
@@ -121,7 +121,10 @@ void ModelFitter::add_surface(
         if (u < 0 || v < 0 || u >= k.width || v >= k.height) continue;
         const auto pixel = static_cast<std::uint32_t>(v * k.width + u);
         const std::uint16_t counts = depth[pixel];
-        if (counts == 0) continue;
+        if (counts == 0) {
+            ++sums.unread;
+            continue;
+        }
         const Eigen::Vector3d n = T.linear() * point.n_obj;
         const Eigen::Vector3d ray = k.ray(u, v);
         const double n_ray = n.dot(ray);
@@ -277,7 +280,9 @@ std::optional<ModelFit> ModelFitter::fit(
     };
     fit.quality.inlier_share = share(sums.agree, sums.agree + sums.farther);
     fit.pixels = view.pixels;
-    fit.seen_share = view.inside * share(sums.agree, view.surface.size());
+    fit.proof = prove(depth, camera_.depth, scale_, view, T);
+    const std::size_t unread = std::min(sums.unread, view.surface.size() * 3 / 10);
+    fit.seen_share = view.inside * share(sums.agree, view.surface.size() - unread);
     fit.seen_through_share = share(sums.farther, sums.offered);
     fit.outline_share = share(sums.outline_found, sums.outline_offered);
     return fit;

@@ -10,6 +10,7 @@
 #include "pipeline/core/disparity.hpp"
 #include "pipeline/core/track_sample.hpp"
 #include "pipeline/track/correlated_noise.hpp"
+#include "pipeline/track/model_proof.hpp"
 #include "pipeline/track/model_view.hpp"
 #include "pipeline/track/shape_pixels.hpp"
 
@@ -27,10 +28,11 @@ struct ModelFit {
     Eigen::Isometry3d T_cam_obj;  ///< of the model's centre
     Matrix6d covariance;   ///< position of the centre (m²), rotation vector (rad²), camera frame
     TrackQuality quality;  ///< inlier_share is of the readings that could show the object
-    double seen_share = 0.0;          ///< of its surface on this side: readings that lie on it
+    double seen_share = 0.0;          ///< of its surface on this side; holes say nothing
     double seen_through_share = 0.0;  ///< readings from behind it: it cannot be there
     std::size_t pixels = 0;           ///< that it covers in the picture
-    double outline_share = 0.0;       ///< of its outline: found where it should be; 0 without one
+    ModelProof proof;
+    double outline_share = 0.0;  ///< of its outline: found where it should be; 0 without one
 };
 
 /// Lays a model upon a depth picture, starting near. What the object would look like is drawn; each

@@ -9,6 +9,7 @@ namespace {
 constexpr float kNearest = 0.1F;      // m
 constexpr double kLeastSlant = 0.15;  // cosine between a surface's normal and the view
 constexpr int kOutlineWindow = 2;     // pixels about one of the rim that tell its direction
+constexpr double kFaceInside = 3.0;   // px from the rim to where its face is asked
 constexpr float kBehind = 1e4F;       // column of a vertex that is behind the camera
 
 }  // namespace
@@ -140,7 +141,7 @@ void ModelViewer::take_surface(const ObjectModel& model, const Eigen::Isometry3d
     }
 }
 
-void ModelViewer::take_outline(const Eigen::Isometry3d& T_cam_obj) {
+void ModelViewer::take_outline(const ObjectModel& model, const Eigen::Isometry3d& T_cam_obj) {
     const Eigen::Isometry3d T_obj_cam = T_cam_obj.inverse();
     const int width = picture_.width;
     const auto covers = [&](int u, int v) {
@@ -164,8 +165,25 @@ void ModelViewer::take_outline(const Eigen::Isometry3d& T_cam_obj) {
                     picture_.left + u * picture_.step, picture_.top + v * picture_.step
                 ) +
                 0.5 * picture_.step * outwards;
-            const double inverse = picture_.inverse[static_cast<std::size_t>(v * width + u)];
-            rim_.push_back({T_obj_cam * (camera_.ray(at.x(), at.y()) / inverse), outwards});
+            const auto pixel = static_cast<std::size_t>(v * width + u);
+            const auto p_cam_at = [&](double x, double y, std::size_t i) -> Eigen::Vector3d {
+                return camera_.ray(x, y) / static_cast<double>(picture_.inverse[i]);
+            };
+            // Not the sliver of a side seen edge-on that may lie along the rim.
+            const int in_u = u - static_cast<int>(std::lround(kFaceInside * outwards.x()));
+            const int in_v = v - static_cast<int>(std::lround(kFaceInside * outwards.y()));
+            const bool is_in = in_u >= 0 && in_v >= 0 && in_u < width && in_v < picture_.height &&
+                               covers(in_u, in_v);
+            const int face_u = is_in ? in_u : u, face_v = is_in ? in_v : v;
+            const auto face = static_cast<std::size_t>(face_v * width + face_u);
+            const Eigen::Vector3d p_face = p_cam_at(
+                picture_.left + face_u * picture_.step, picture_.top + face_v * picture_.step, face
+            );
+            Eigen::Vector3d n_face = model.normals[picture_.triangle[face]].cast<double>();
+            if (n_face.dot(T_obj_cam.linear() * p_face) > 0.0) n_face = -n_face;
+            rim_.push_back(
+                {T_obj_cam * p_cam_at(at.x(), at.y(), pixel), T_obj_cam * p_face, n_face, outwards}
+            );
         }
     }
     const std::size_t stride = rim_.size() / settings_.most_outline + 1;
@@ -182,7 +200,7 @@ const ModelView& ModelViewer::look(const ObjectModel& model, const Eigen::Isomet
     if (!frame_the_object(model, T_cam_obj.cast<float>())) return view_;
     draw(model);
     take_surface(model, T_cam_obj);
-    if (model.has_outline && settings_.most_outline > 0) take_outline(T_cam_obj);
+    if (model.has_outline && settings_.most_outline > 0) take_outline(model, T_cam_obj);
     return view_;
 }
 

@@ -19,7 +19,9 @@ struct ViewPoint {
 /// A point where the object ends in the picture.
 struct OutlinePoint {
     Eigen::Vector3d p_obj;
-    Eigen::Vector2d outwards;  ///< unit, in the picture
+    Eigen::Vector3d p_face_obj;  ///< on the face that ends there, some pixels further in
+    Eigen::Vector3d n_face_obj;  ///< its normal, unit, towards the camera
+    Eigen::Vector2d outwards;    ///< unit, in the picture
 };
 
 /// What the camera would see of an object at one pose.
@@ -61,7 +63,7 @@ private:
     bool frame_the_object(const ObjectModel& model, const Eigen::Isometry3f& T_cam_obj);
     void draw(const ObjectModel& model);
     void take_surface(const ObjectModel& model, const Eigen::Isometry3d& T_cam_obj);
-    void take_outline(const Eigen::Isometry3d& T_cam_obj);
+    void take_outline(const ObjectModel& model, const Eigen::Isometry3d& T_cam_obj);
 
     Pinhole camera_;
     Settings settings_;

@@ -1,6 +1,7 @@
 #include "pipeline/track/patch_recognition.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace kinectlab {
@@ -13,8 +14,9 @@ constexpr float kLeastScore = 0.3F;         // of one that was moved nearer
 constexpr std::size_t kSketches = 160;      // poses that are laid upon the picture
 constexpr std::size_t kMovedSketches = 40;  // of one thing that moved
 constexpr std::size_t kMostMoved = 4;       // things that moved, the biggest
-constexpr double kWholeThing = 0.75;        // of the object, and of what moved
-constexpr double kOutlineOfMoved = 0.3;
+constexpr double kWholeThing = 0.85;        // of the object, and of what moved
+constexpr double kOutlineOfMoved = 0.45;
+constexpr double kOutlineOfPart = 0.85;
 constexpr int kBorder_px = 10;        // a Kinect reads nothing in its last columns
 constexpr double kPlainMerit = 0.93;  // with an outline nothing better is to be expected
 // Cartons of other sizes reach 0.78 with a carton's cloud, itself 0.86.
@@ -56,9 +58,12 @@ double explained_share(const ModelFit& fit, std::size_t moved_pixels) {
     return std::min(1.0, covered / static_cast<double>(moved_pixels));
 }
 
-/// A thing on a table has no outline where it stands; that it moved as a whole says as much.
+/// A thing on a table has no outline where it stands; that it moved as a whole says as much. What
+/// moved and is larger may be another thing, or the object and a hand: then the outline has to
+/// tell.
 Acceptance limits_for(const ModelFit& fit, std::size_t moved_pixels) {
     Acceptance limits;
+    if (explained_share(fit, moved_pixels) < kWholeThing) limits.least_outline = kOutlineOfPart;
     const bool is_whole =
         fit.seen_share > kWholeThing && explained_share(fit, moved_pixels) > kWholeThing;
     if (moved_pixels > 0 && is_whole) limits.least_outline = kOutlineOfMoved;
@@ -79,7 +84,9 @@ bool is_accepted(
     return fit.seen_share >= limits.least_seen &&
            fit.quality.inlier_share >= limits.least_inliers &&
            (!model.has_outline || fit.outline_share >= limits.least_outline) &&
-           fit.quality.rms_steps <= limits.most_rms_sigmas * sigma;
+           fit.quality.rms_steps <= limits.most_rms_sigmas * sigma &&
+           fit.proof.misfit_share <= limits.most_misfit &&
+           fit.proof.goes_on_share <= limits.most_goes_on;
 }
 
 PatchRecogniser::PatchRecogniser(
@@ -180,11 +187,10 @@ std::vector<PatchRecogniser::Sketch> PatchRecogniser::best_sketches(
     return sketches;
 }
 
-std::optional<ModelFit> PatchRecogniser::best_fit(
+std::optional<PatchRecogniser::Found> PatchRecogniser::best_fit(
     std::span<const std::uint16_t> depth, std::size_t most, std::size_t moved_pixels
 ) {
-    std::optional<ModelFit> best;
-    double best_merit = 0.0;
+    std::optional<Found> best;
     for (const auto& sketch : best_sketches(depth, most, moved_pixels)) {
         const auto fit = fitter_.fit(depth, *model_, sketch.T_cam_obj, {}, 3);
         if (!fit || !is_accepted(*fit, *model_, camera_, limits_for(*fit, moved_pixels))) continue;
@@ -193,9 +199,8 @@ std::optional<ModelFit> PatchRecogniser::best_fit(
         if (!model_->has_outline &&
             (reached < kLeastMeritOfCloud || is_blurred(fit->T_cam_obj.translation().z())))
             continue;
-        if (best && reached <= best_merit) continue;
-        best = fit;
-        best_merit = reached;
+        if (best && reached <= best->merit) continue;
+        best = {*fit, reached, sketch.view};
     }
     return best;
 }
@@ -204,22 +209,55 @@ std::optional<ModelFit> PatchRecogniser::find_moved(
     std::span<const std::uint16_t> depth, std::span<const std::span<const std::uint32_t>> moved
 ) {
     check_.set(depth);
+    std::optional<Found> best;
     for (const auto& pixels : moved.first(std::min(moved.size(), kMostMoved))) {
         if (is_cut_off(pixels, camera_.depth)) continue;
         proposals_.clear();
         for (const auto& pose : moved_poses(depth, camera_, pixels, table_))
             consider(pose);
-        if (auto fit = best_fit(depth, kMovedSketches, pixels.size())) return fit;
+        const auto found = best_fit(depth, kMovedSketches, pixels.size());
+        if (found && (!best || found->merit > best->merit)) best = found;
     }
-    return std::nullopt;
+    if (!best) return std::nullopt;
+    return best->fit;
 }
 
-std::optional<ModelFit> PatchRecogniser::find(std::span<const std::uint16_t> depth) {
+/// Pixels of the segment in which most of what the object shows lies; 0 if it is in none.
+std::size_t PatchRecogniser::moved_about(
+    const Found& found, std::span<const std::span<const std::uint32_t>> moved
+) {
+    const std::size_t segments = std::min<std::size_t>(moved.size(), 255);
+    moved_.assign(static_cast<std::size_t>(camera_.depth.width * camera_.depth.height), 0);
+    for (std::size_t i = 0; i < segments; ++i)
+        for (const auto pixel : moved[i])
+            moved_[pixel] = static_cast<std::uint8_t>(i + 1);
+    std::array<std::size_t, 256> hits{};
+    const SketchView& view = table_.view(found.view);
+    for (const auto& point : view.surface) {
+        const Eigen::Vector2d at =
+            camera_.depth.project(found.fit.T_cam_obj * point.p_obj.cast<double>());
+        const auto u = std::lround(at.x()), v = std::lround(at.y());
+        if (u < 0 || v < 0 || u >= camera_.depth.width || v >= camera_.depth.height) continue;
+        ++hits[moved_[static_cast<std::size_t>(v * camera_.depth.width + u)]];
+    }
+    const auto most = std::max_element(hits.begin() + 1, hits.end());
+    if (2 * *most < view.surface.size()) return 0;
+    return moved[static_cast<std::size_t>(most - hits.begin() - 1)].size();
+}
+
+std::optional<ModelFit> PatchRecogniser::find(
+    std::span<const std::uint16_t> depth, std::span<const std::span<const std::uint32_t>> moved
+) {
     check_.set(depth);
     proposals_.clear();
     for (const auto& patch : find_surface_patches(depth, camera_, settings_))
         propose(patch);
-    return best_fit(depth, kSketches, 0);
+    const auto found = best_fit(depth, kSketches, 0);
+    if (!found) return std::nullopt;
+    const std::size_t pixels = moved_about(*found, moved);
+    if (!is_accepted(found->fit, *model_, camera_, limits_for(found->fit, pixels)))
+        return std::nullopt;
+    return found->fit;
 }
 
 }  // namespace kinectlab

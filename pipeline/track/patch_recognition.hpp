@@ -18,6 +18,8 @@ struct Acceptance {
     double least_inliers = 0.88;  ///< of the readings on it or behind it
     double least_outline = 0.6;   ///< of the outline, where the model has one
     double most_rms_sigmas = 3.0;
+    double most_misfit = 0.15;   ///< of the readings at its surface
+    double most_goes_on = 0.12;  ///< of its outline: where it does it is a part of something larger
 };
 
 [[nodiscard]] bool is_accepted(
@@ -45,8 +47,12 @@ public:
         std::span<const std::uint16_t> depth, std::span<const std::span<const std::uint32_t>> moved
     );
 
-    /// Anywhere: some tenths of a second.
-    [[nodiscard]] std::optional<ModelFit> find(std::span<const std::uint16_t> depth);
+    /// Anywhere: some tenths of a second. Where it lies in something that moved, it must be all of
+    /// it, or have its whole outline.
+    [[nodiscard]] std::optional<ModelFit> find(
+        std::span<const std::uint16_t> depth,
+        std::span<const std::span<const std::uint32_t>> moved = {}
+    );
 
     /// Patches of the model in its table; an object without any, such as a ball, is never found.
     [[nodiscard]] std::size_t model_patches() const { return table_.size(); }
@@ -65,14 +71,23 @@ private:
         double merit;
     };
 
+    struct Found {
+        ModelFit fit;
+        double merit;
+        std::uint32_t view;
+    };
+
     void propose(const SurfacePatch& patch);
     void consider(const SurfacePatch& patch, const ModelPatch& match);
     void consider(const ViewPose& pose);
+    [[nodiscard]] std::size_t moved_about(
+        const Found& found, std::span<const std::span<const std::uint32_t>> moved
+    );
     [[nodiscard]] std::vector<Proposal> distinct_best(std::size_t most) const;
     [[nodiscard]] std::vector<Sketch> best_sketches(
         std::span<const std::uint16_t> depth, std::size_t most, std::size_t moved_pixels
     );
-    [[nodiscard]] std::optional<ModelFit> best_fit(
+    [[nodiscard]] std::optional<Found> best_fit(
         std::span<const std::uint16_t> depth, std::size_t most, std::size_t moved_pixels
     );
     [[nodiscard]] bool is_blurred(double z_m) const;
@@ -86,6 +101,7 @@ private:
     PoseCheck check_;
     ModelFitter sketch_, fitter_;
     std::vector<Proposal> proposals_;
+    std::vector<std::uint8_t> moved_;  // 1 + number of the segment, a value a pixel
 };
 
 }  // namespace kinectlab

@@ -58,9 +58,10 @@ float PoseCheck::score(const Eigen::Isometry3f& T_cam_obj, const SketchView& vie
     for (const auto& point : view.surface) {
         const Eigen::Vector3f p = T_cam_obj * point.p_obj;
         if (p.dot(T_cam_obj.linear() * point.n_obj) > 0.0F) continue;  // turned away in this pose
+        const float z = reading_at(p);
+        if (z == 0.0F) continue;
         if (++seen == kFirstLook && static_cast<float>(sum) < kFirstScore * kFirstLook)
             return static_cast<float>(sum) / kFirstLook;
-        const float z = reading_at(p);
         if (z < 0.0F) continue;
         const float off = z - p.z();
         if (std::abs(off) < gate_m_) ++sum;

@@ -20,7 +20,7 @@ constexpr int kLongestRest = 31;              // frames, while nothing moves
 constexpr int kLongestPause = 7;              // frames
 
 /// What keeps an object that was seen a moment ago: less than it takes to recognise one.
-constexpr Acceptance kFollowed{0.25, 0.65, 0.2, 4.0};
+constexpr Acceptance kFollowed{0.25, 0.65, 0.2, 4.0, 0.25, 0.18};
 
 struct Target {
     TrackedObject<SurfacePatchSettings> object;
@@ -198,7 +198,7 @@ private:
             --target.pause;
             return std::nullopt;
         }
-        if (!fit) fit = target.recogniser->find(rest_);
+        if (!fit) fit = target.recogniser->find(rest_, moved);
         const int longest = moved.empty() ? kLongestRest : kLongestPause;
         target.last_pause = fit ? 0 : std::min(longest, 2 * target.last_pause + 1);
         target.pause = target.last_pause;
