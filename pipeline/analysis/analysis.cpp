@@ -26,7 +26,7 @@ Result<const AnalysisMethod*> analysis_method(const std::string& name) {
         ErrorCode::not_found,
         "method",
         fmt::format("\"{:.64}\" is no analysis", name),
-        "did you mean " + nearest_name(name, names) + "?"
+        did_you_mean(name, names)
     );
 }
 
@@ -42,7 +42,7 @@ Result<AnalysisSettings> check_settings(
             ErrorCode::invalid_argument,
             name,
             "is no setting of the analysis " + method.name,
-            names.empty() ? "it has none" : "did you mean " + nearest_name(name, names) + "?"
+            names.empty() ? "it has none" : did_you_mean(name, names)
         );
     }
     AnalysisSettings settings = given;

@@ -89,13 +89,21 @@ void measure_projectile(
         );
     const Measurement drag =
         budget.measure("drag", "1/m", [](const VectorXd& x) { return x[kFlightDrag]; }, {-1, 0});
-    const bool shown = drag.u < 0.5 * air.drag_u || (air.drag_given && air.drag_u > 0.0);
+    const bool shown = drag.u < 0.5 * air.drag_u;
     if (metric && shown)
         out.measurements.push_back(drag);
     else if (air.drag_u > 0.0)
         out.notes.emplace_back(
-            "The drag does not show in this flight and was not given; what it may be is the line "
-            "\"drag\". Give ball_density_kg_m3 and ball_radius_m, or throw farther."
+            air.drag_given
+                ? fmt::format(
+                      "The drag does not show in this flight: {:.2g} ± {:.1g} for each metre was "
+                      "taken, from the ball's size and density and a smooth sphere's coefficient "
+                      "or the one given.",
+                      air.drag,
+                      air.drag_u
+                  )
+                : "The drag does not show in this flight and was not given; what it may be is the "
+                  "line \"drag\". Give ball_density_kg_m3 and ball_radius_m, or throw farther."
         );
     const FlightTop top = flight_top(fit.parameters);
     const Measurement rising = budget.measure(

@@ -49,7 +49,9 @@ std::string drag_note(const SwingFit& fit) {
     if (drag.law == DragLaw::quadratic)
         return "Drag: quadratic; as the speed squared the air takes the swing away better than as "
                "the speed" +
-               figures + ".";
+               figures +
+               ". quadratic_damping then holds whatever linear drag there is as well, and its "
+               "uncertainty does not know of that.";
     if (drag.told_apart || fit.parameters.damping <= 0.0)
         return "Drag: linear; a quadratic term is not seen" + figures + ".";
     const SwingParameters* other = under(drag, DragLaw::quadratic);

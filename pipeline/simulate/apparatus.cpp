@@ -46,7 +46,7 @@ Result<const Kind*> kind_of(std::string_view name) {
         ErrorCode::not_found,
         "apparatus",
         "there is no \"" + std::string(name.substr(0, 60)) + "\"",
-        "did you mean " + nearest_name(name, apparatus_names()) + "?"
+        did_you_mean(name, apparatus_names())
     );
 }
 

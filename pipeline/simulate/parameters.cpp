@@ -40,7 +40,7 @@ Result<ParameterMap> complete(
             ErrorCode::invalid_argument,
             name,
             "is not a parameter of the " + std::string(apparatus),
-            "did you mean " + nearest_name(name, names) + "?"
+            did_you_mean(name, names)
         );
     }
     ParameterMap all;

@@ -97,7 +97,7 @@ net::Response get_poses(const Call& call) {
         {ErrorCode::not_found,
          "object",
          "is '" + wanted->second.substr(0, 40) + "'",
-         "did you mean " + nearest_name(wanted->second, names) + "?"}
+         did_you_mean(wanted->second, names)}
     );
 }
 
@@ -155,7 +155,7 @@ net::Response get_plot_picture(const Call& call) {
         return problem(
             404,
             "there is no plot '" + file.substr(0, 40) + "'",
-            "did you mean " + nearest_name(name, names) + ".svg? Plots are .svg or .png"
+            "plots are .svg or .png; " + did_you_mean(name, names)
         );
     return {
         200,

@@ -44,7 +44,7 @@ tl::unexpected<Error> not_among(
         ErrorCode::invalid_argument,
         path,
         "is \"" + name.substr(0, 64) + "\"",
-        names.empty() ? "leave it out" : "did you mean " + nearest_name(name, names) + "?"
+        names.empty() ? "leave it out" : did_you_mean(name, names)
     );
 }
 

@@ -52,7 +52,7 @@ std::map<std::string, double> facts_of(
         outliers += fit.outliers;
         chi2 = std::max(chi2, fit.reduced_chi2);
     }
-    facts["duration_s"] = seconds;
+    facts.try_emplace("duration_s", seconds);  // of what was used, where the method tells it
     facts["tracked_share"] = seen / frames;
     facts["outlier_share"] = outliers / std::max(used + outliers, 1.0);
     facts["reduced_chi2"] = chi2;
