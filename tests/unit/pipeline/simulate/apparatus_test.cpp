@@ -162,9 +162,9 @@ TEST(Apparatus, RefusesWhatItIsNotOrHasNot) {
     }
     EXPECT_EQ(field_of("pendulum", {{"string_mass_kg", 0.1}}), "string_mass_kg");
     EXPECT_EQ(field_of("collision", {{"offset_m", 0.09}}), "offset_m");
-    EXPECT_EQ(
-        make_apparatus({"incline", {{"frikton", 1.0}}}).error().cure, "did you mean friction?"
-    );
+    EXPECT_TRUE(make_apparatus({"incline", {{"frikton", 1.0}}})
+                    .error()
+                    .cure.starts_with("did you mean friction? Valid: "));
 }
 
 TEST(Apparatus, IsToldAsOneLine) {
