@@ -8,6 +8,7 @@
 #include "pipeline/analysis/analysis.hpp"
 #include "server/experiments/definition_names.hpp"
 #include "server/experiments/strict_json.hpp"
+#include "server/experiments/student_text.hpp"
 #include "server/experiments/units_of_names.hpp"
 
 namespace kinectlab::experiments {
@@ -180,7 +181,11 @@ Result<void> read_acceptance(const json& document, Definition& definition) {
         check.reason = reader.text("reason");
         if (!check.min && !check.max)
             reader.refuse("min", "and max are both missing", "give one of them");
+        if (check.min && check.max && *check.min > *check.max)
+            reader.refuse("min", "is above max, so that no run is good", "give min <= max");
         if (!reader.ok()) return reader.error();
+        if (auto ok = check_student_text(check.reason, reader.path_of("reason")); !ok)
+            return tl::unexpected(ok.error());
         if (!among(known, check.fact)) return not_among(reader.path_of("fact"), check.fact, known);
         definition.acceptance.push_back(std::move(check));
     }

@@ -47,6 +47,8 @@ Result<Parameter> read_parameter(const json& element, const std::string& path) {
             "give the unit " + std::string(promised) + ", or another name"
         );
     if (!reader.ok()) return reader.error();
+    if (auto ok = check_student_text(parameter.help, path + ".help"); !ok)
+        return tl::unexpected(ok.error());
     return parameter;
 }
 
@@ -129,7 +131,9 @@ Result<Definition> read_definition(const json& document) {
     if (!reader.ok()) return reader.error();
 
     for (const auto& [text, path] :
-         {std::pair(&definition.summary, "summary"), std::pair(&definition.theory, "theory")}) {
+         {std::pair(&definition.title, "title"),
+          std::pair(&definition.summary, "summary"),
+          std::pair(&definition.theory, "theory")}) {
         if (auto ok = check_student_text(*text, path); !ok) return tl::unexpected(ok.error());
     }
     for (std::size_t i = 0; i < parameters.size(); ++i) {

@@ -187,6 +187,26 @@ TEST(Definition, TextThatCouldCarryMoreThanTextIsRefusedWithItsPlace) {
     EXPECT_TRUE(read_with_schema(document));
 }
 
+TEST(Definition, NoTextOfItMayCarryAScript) {
+    const std::string script = "See <script>alert(1)</script>";
+    EXPECT_EQ(refusal([&](auto& d) { d["title"] = script; }).field, "title");
+    EXPECT_EQ(
+        refusal([&](auto& d) { d["parameters"][0]["help"] = script; }).field, "parameters[0].help"
+    );
+    EXPECT_EQ(
+        refusal([&](auto& d) { d["acceptance"][0]["reason"] = script; }).field,
+        "acceptance[0].reason"
+    );
+}
+
+TEST(Definition, AnAcceptanceCheckThatNothingPassesIsRefused) {
+    const auto error = refusal([](auto& d) {
+        d["acceptance"][0]["min"] = 10;
+        d["acceptance"][0]["max"] = 3;
+    });
+    EXPECT_EQ(error.field, "acceptance[0].min");
+}
+
 TEST(Definition, TheSchemaRefusesWhatNoOtherCheckLooksAt) {
     EXPECT_EQ(refusal([](auto& d) { d["id"] = "../etc/passwd"; }).field, "[id]");
     EXPECT_FALSE(refusal([](auto& d) { d["title"] = std::string(500, 'x'); }).message.empty());
