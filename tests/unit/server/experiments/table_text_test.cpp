@@ -42,7 +42,6 @@ std::string in_utf16(const std::string& text, bool little) {
 
 TEST(TableText, TimesMayCountFromAnyMoment) {
     expect_ten("t,x,y\n" + rows("176000000{}.25,1.25,2.5\n"));
-    expect_ten("t,x,y\n" + rows("-900000{}.5,1.25,2.5\n"));
     expect_ten("t,x,y\n" + rows("70000000000000{},1.25,2.5\n"));
     const auto got = read("t_ns,x,y\n" + rows("176000000012345678{},1.25,2.5\n"));
     ASSERT_TRUE(got) << to_text(got.error());
