@@ -36,6 +36,8 @@ struct Arguments {
 struct Material {
     std::vector<Trajectory> trajectories;
     experiments::Provenance provenance;  ///< but for what the fit adds
+    std::vector<std::string> warnings;   ///< of how it was read
+    bool metric = true;                  ///< a table in pixels is not
 };
 
 std::optional<int> parse(int argc, char** argv, Arguments& arguments) {
@@ -61,8 +63,8 @@ std::optional<int> parse(int argc, char** argv, Arguments& arguments) {
     app.add_option(
         "--units",
         arguments.units,
-        "of a table, such as cm or t=ms,x=cm,y=cm; else s and m. With px what needs no scale is "
-        "measured"
+        "of a table, such as cm or t=ms,x=cm,y=cm; else as its heads say, such as x (cm), else s "
+        "and m. With px what needs no scale is measured"
     );
     app.add_option(
            "--set",
@@ -119,7 +121,7 @@ Result<Material> from_recording(
 ) {
     const auto recording = track_recording(path, experiments::plan_for(definition, values));
     if (!recording) return tl::unexpected(recording.error());
-    Material material{trajectories_of(*recording), {}};
+    Material material{trajectories_of(*recording), {}, {}};
     auto& p = material.provenance;
     p.source = recording->source.name;
     p.camera = recording->source.camera;
@@ -145,13 +147,15 @@ Result<Material> from_table(
     std::vector<std::uint8_t> bytes;
     if (auto ok = read_file(path, kMostTableBytes, bytes); !ok) return tl::unexpected(ok.error());
     const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
-    auto trajectory = experiments::read_trajectory_table(text, layout, path.filename().string());
-    if (!trajectory) return tl::unexpected(trajectory.error());
-    trajectory->object = object;
-    Material material{{std::move(*trajectory)}, {}};
+    auto table = experiments::read_trajectory_table(text, layout, path.filename().string());
+    if (!table) return tl::unexpected(table.error());
+    table->trajectory.object = object;
+    Material material{
+        {std::move(table->trajectory)}, {}, std::move(table->warnings), !table->pixels};
     const auto& samples = material.trajectories.front().samples;
     auto& p = material.provenance;
     p.source = path.filename().string();
+    p.units = table->units;
     p.lab_frame_assumed = true;
     p.first_frame = samples.front().t;
     p.last_frame = samples.back().t;
@@ -204,10 +208,10 @@ int analyse(int argc, char** argv) {
     );
     conditions.released = released;
     if (is_table(arguments.recording)) {
-        conditions.metric = !layout->pixels;
+        conditions.metric = material->metric;
         conditions.tilt_u_rad = kHandHeldTilt;
     }
-    const auto evaluation = experiments::evaluate(
+    auto evaluation = experiments::evaluate(
         {*definition, *values, free, conditions, {}},
         material->provenance,
         material->provenance.first_frame
@@ -216,6 +220,8 @@ int analyse(int argc, char** argv) {
         static_cast<void>(report(evaluation.error()));
         return kFailed;
     }
+    for (const auto& warning : material->warnings)
+        evaluation->result["warnings"].push_back(warning);
     if (!arguments.out.empty()) {
         auto written =
             write_analysis(arguments.out, *definition, *evaluation, material->trajectories);

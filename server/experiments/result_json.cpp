@@ -38,6 +38,7 @@ json to_json(const Provenance& p) {
         {"samples_used", p.samples_used},
         {"outliers", p.outliers},
         {"reduced_chi2", p.reduced_chi2}};
+    if (!p.units.empty()) document["units"] = p.units;
     if (p.T_lab_cam) document["T_lab_cam"] = rows_of(*p.T_lab_cam);
     return document;
 }

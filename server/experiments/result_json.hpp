@@ -18,6 +18,7 @@ struct Provenance {
     std::string program_version;
     std::string source;                ///< the recording, or the rig and run
     std::optional<RgbdCamera> camera;  ///< none of a table that another program wrote
+    std::string units;                 ///< of such a table, as they were read; else empty
     std::optional<Eigen::Isometry3d> T_lab_cam;
     bool lab_frame_assumed = false;  ///< nothing said where the camera stands: taken to be level
     TimeNs first_frame = 0;
