@@ -226,6 +226,7 @@ std::optional<ModelFit> PatchRecogniser::find_moved(
 std::size_t PatchRecogniser::moved_about(
     const Found& found, std::span<const std::span<const std::uint32_t>> moved
 ) {
+    if (moved.empty()) return 0;
     const std::size_t segments = std::min<std::size_t>(moved.size(), 255);
     moved_.assign(static_cast<std::size_t>(camera_.depth.width * camera_.depth.height), 0);
     for (std::size_t i = 0; i < segments; ++i)
