@@ -4,8 +4,10 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <string_view>
 
 #include "pipeline/track/assignment.hpp"
+#include "pipeline/track/radius_check.hpp"
 #include "pipeline/track/shape_memory.hpp"
 #include "pipeline/track/sphere_candidate.hpp"
 #include "pipeline/track/sphere_fit.hpp"
@@ -20,6 +22,13 @@ constexpr double kMinVisible = 0.45;      // of the pixels that it should cover
 constexpr double kMinAlone = 0.50;        // of the pixels around: strings and magnets touch it
 constexpr double kMaxRmsSigmas = 3.0;
 constexpr double kMaxRadiusShareU = 0.15;  // a free radius less sure than this is no measurement
+
+constexpr std::string_view kNothingMoved = "nothing moved";
+constexpr std::string_view kNoSphere =
+    "nothing that moved is a sphere of its size, whole and alone";
+constexpr std::string_view kOtherRadius =
+    "the sphere there has another radius than radius_m: measure it, or leave radius_m out and give "
+    "min_radius_m and max_radius_m";
 
 constexpr TimeNs kMemory = kNsPerSecond / 2;  // a place older than this is no place to look first
 constexpr std::size_t kMostTries = 8;         // segments looked at for one object
@@ -43,7 +52,7 @@ public:
           fitter_(camera),
           assignment_(objects.size(), objects.size()) {
         for (auto& object : objects)
-            targets_.push_back({std::move(object), {}, false, {}});
+            targets_.push_back({std::move(object), {}, {}, false, {}});
         order_.resize(targets_.size());
         for (auto* list : {&alike_, &order_})
             list->reserve(targets_.size());
@@ -90,6 +99,7 @@ private:
     struct Target {
         TrackedObject<SphereSettings> object;
         ShapeMemory memory;
+        RadiusCheck radius_check;
         bool done = false;  // in this frame
         TrackSample sample;
     };
@@ -111,13 +121,15 @@ private:
             targets_[i].done = true;
         }
         fits_.clear();
+        why_lost_ = moved.empty() ? kNothingMoved : kNoSphere;
         for (const auto& pixels : likely_segments(frame, moved)) {
             // Balls that touch are one segment.
             passed_by_.clear();
             while (fits_.size() < alike_.size() && passed_by_.size() < kMostPassedBy) {
                 auto fit = detect(settings, frame, pixels);
                 if (!fit) break;
-                if (!may_be_one(*fit, frame.t)) {
+                if (!may_be_one(*fit, frame.t) ||
+                    (settings.radius_m && has_other_radius(*fit, frame))) {
                     passed_by_.push_back(fit->sphere);
                     continue;
                 }
@@ -127,6 +139,8 @@ private:
             if (fits_.size() == alike_.size()) break;
         }
         passed_by_.clear();
+        for (const std::size_t i : alike_)
+            targets_[i].sample.quality.why_lost = why_lost_;
         name_fits(frame.t);
     }
 
@@ -237,6 +251,26 @@ private:
         return fit && is_sphere(*fit, settings) ? fit : std::nullopt;
     }
 
+    /// Whether what was seen of a ball shows that the known radius is not its own.
+    bool has_other_radius(const SphereFit& known, const RgbdFrame& frame) {
+        const std::size_t index =
+            *std::min_element(alike_.begin(), alike_.end(), [&](std::size_t a, std::size_t b) {
+                const RadiusCheck &one = targets_[a].radius_check,
+                                  &other = targets_[b].radius_check;
+                const bool is_one = one.is_of(known.sphere, frame.t);
+                if (is_one != other.is_of(known.sphere, frame.t)) return is_one;
+                return one.last_seen() < other.last_seen();
+            });
+        RadiusCheck& check = targets_[index].radius_check;
+        if (check.follow(known.sphere, frame.t))
+            if (const auto free = fitter_.fit(frame.depth, known.sphere, false);
+                free && free->radius_u > 0.0)
+                check.add(free->sphere.radius, free->radius_u);
+        if (!check.is_other(known.sphere)) return false;
+        why_lost_ = kOtherRadius;
+        return true;
+    }
+
     /// The pixels that no other object's sphere explains already.
     MovedPixels without_claimed(const RgbdFrame& frame, MovedPixels pixels) {
         if (claimed_.empty() && passed_by_.empty()) return pixels;
@@ -272,6 +306,7 @@ private:
     std::vector<SphereFit> fits_;  // of the objects alike
     std::vector<double> cost_;
     Assignment assignment_;
+    std::string_view why_lost_;  // of the objects alike
     std::vector<Sphere> claimed_;
     std::vector<Sphere> passed_by_;  // of a segment: balls that are none of the objects alike
     std::vector<MovedPixels> segments_;
