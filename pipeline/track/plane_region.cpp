@@ -18,6 +18,10 @@ constexpr double kMaxRmsSigmas = 3.0;
 constexpr double kMinInlierShare = 0.9;  // less where a fit slid from one face to the next
 constexpr double kMostTurnU = 0.02;      // rad; planes through a strip of pixels may be turned more
 
+// Within 4σ the first rows of a face that begins at the edge pass for the plane and turn it.
+constexpr std::uint32_t kEdge = 2;   // px
+constexpr double kMostOfEdge = 0.4;  // of all pixels: a plane seen so flatly keeps them
+
 constexpr std::uint8_t kNear = 1, kKept = 2;  // in near_
 
 struct Row {
@@ -99,8 +103,27 @@ void PlaneRegion::keep_connected(const std::vector<std::uint8_t>& known) {
     }
 }
 
-std::optional<ShapeFit> PlaneRegion::fit(const DisparityImage& image, const Shape& guess) {
-    auto found = fitter_.fit(image, kept_, guess, false);
+/// Those of kept_ that do not lie at the region's edge.
+void PlaneRegion::find_inner() {
+    const std::uint32_t stride = near_at(1) - near_at(0);
+    inner_.clear();
+    for (const std::uint32_t pixel : kept_) {
+        const std::uint32_t v = pixel / width_, u = pixel % width_;
+        if (v < kEdge || v + kEdge >= height_ || u < kEdge || u + kEdge >= width_) continue;
+        const std::uint8_t* at = near_.data() + near_at(v) + u;
+        const std::uint32_t down = kEdge * stride;
+        if (at[-static_cast<std::ptrdiff_t>(down)] == kKept && at[down] == kKept &&
+            at[-static_cast<std::ptrdiff_t>(kEdge)] == kKept && at[kEdge] == kKept)
+            inner_.push_back(pixel);
+    }
+    const auto all = static_cast<double>(kept_.size());
+    if (static_cast<double>(inner_.size()) < (1.0 - kMostOfEdge) * all) inner_ = kept_;
+}
+
+std::optional<ShapeFit> PlaneRegion::fit(
+    const DisparityImage& image, const Shape& guess, std::span<const std::uint32_t> pixels
+) {
+    auto found = fitter_.fit(image, pixels, guess, false);
     if (!found) return found;
     const double s = scale_.steps_at(std::max(0.1, found->shape.point.z()));
     const double turn = found->covariance.bottomRightCorner<3, 3>().trace() - kAnyAngle;
@@ -115,14 +138,15 @@ std::optional<ShapeFit> PlaneRegion::grow(
 ) {
     std::fill(growing_.begin(), growing_.end(), std::uint8_t{0});
     kept_.assign(pixels.begin(), pixels.end());
-    auto found = fit(image, rough);
+    auto found = fit(image, rough, kept_);
     std::size_t size = kept_.size();
     for (int i = 0; found && i < kMostRounds; ++i) {
         for (const std::uint32_t pixel : kept_)
             growing_[pixel] = 1;
         find_near(image, found->shape);
         keep_connected(growing_);
-        found = fit(image, found->shape);
+        find_inner();
+        found = fit(image, found->shape, inner_);
         const auto before = static_cast<double>(std::exchange(size, kept_.size()));
         std::fill(growing_.begin(), growing_.end(), std::uint8_t{0});
         if (static_cast<double>(size) < kGrown * before) break;
@@ -140,7 +164,8 @@ std::optional<ShapeFit> PlaneRegion::follow(const DisparityImage& image) {
     find_near(image, *plane_);
     keep_connected(region_);
     if (kept_.size() < kFewestPixels) return std::nullopt;
-    const auto found = fit(image, *plane_);
+    find_inner();
+    const auto found = fit(image, *plane_, inner_);
     if (!found) return std::nullopt;
     plane_ = found->shape;
     std::fill(region_.begin(), region_.end(), std::uint8_t{0});

@@ -33,7 +33,10 @@ public:
 private:
     void find_near(const DisparityImage& image, const Shape& plane);
     void keep_connected(const std::vector<std::uint8_t>& known);
-    [[nodiscard]] std::optional<ShapeFit> fit(const DisparityImage& image, const Shape& guess);
+    void find_inner();
+    [[nodiscard]] std::optional<ShapeFit> fit(
+        const DisparityImage& image, const Shape& guess, std::span<const std::uint32_t> pixels
+    );
 
     /// Where a row begins in near_: a column and a row about the picture stay 0, so that a pixel's
     /// neighbours need no thought.
@@ -48,7 +51,7 @@ private:
     std::optional<Shape> plane_;
     std::vector<std::uint8_t> region_;  ///< of plane_, a byte a pixel
     std::vector<std::uint8_t> near_, growing_;
-    std::vector<std::uint32_t> kept_;
+    std::vector<std::uint32_t> kept_, inner_;
 };
 
 }  // namespace kinectlab
