@@ -9,7 +9,7 @@
 namespace kinectlab {
 namespace {
 
-constexpr float kReach_sigmas = 3.5F;
+constexpr float kReach_sigmas = 3.0F;
 constexpr int kMostReach = 24;
 constexpr int kTile = 256;  // columns; as many rows of them as a blur reads fit the nearest cache
 
@@ -76,6 +76,29 @@ KINECTLAB_HOT_LOOP void double_row(
         out[2 * u + 1] = 0.5F * (here + next);
     }
     out[2 * width - 2] = out[2 * width - 1] = 0.5F * (a[width - 1] + b[width - 1]);
+}
+
+/// Value half-way between the third and fourth of six, by the polynomial through them.
+constexpr std::array kMidpoint = {150.0F / 256.0F, -25.0F / 256.0F, 3.0F / 256.0F};
+constexpr int kMidpointReach = 3;
+
+KINECTLAB_HOT_LOOP void between_rows(
+    const std::array<const float*, 6>& rows, int count, float* __restrict out
+) {
+    const float *a = rows[0], *b = rows[1], *c = rows[2], *d = rows[3], *e = rows[4], *f = rows[5];
+    for (int i = 0; i < count; ++i)
+        out[i] = kMidpoint[0] * (c[i] + d[i]) + kMidpoint[1] * (b[i] + e[i]) +
+                 kMidpoint[2] * (a[i] + f[i]);
+}
+
+/// `from` has kMidpointReach pixels more on either side.
+KINECTLAB_HOT_LOOP void spread_row(const float* __restrict from, int count, float* __restrict out) {
+    for (int i = 0; i < count; ++i) {
+        out[2 * i] = from[i];
+        out[2 * i + 1] = kMidpoint[0] * (from[i] + from[i + 1]) +
+                         kMidpoint[1] * (from[i - 1] + from[i + 2]) +
+                         kMidpoint[2] * (from[i - 2] + from[i + 3]);
+    }
 }
 
 }  // namespace
@@ -162,6 +185,32 @@ void halved(const GreyImage& from, GreyImage& to) {
         float* out = to.row(v);
         for (int u = 0; u < to.width; ++u)
             out[u] = row[2 * u];
+    }
+}
+
+void unhalved(
+    const GreyImage& from, int width, int height, GreyImage& to, std::vector<float>& scratch
+) {
+    to.resize(width, height);
+    const int needed = (width + 1) / 2;
+    scratch.resize(static_cast<std::size_t>(needed + 2 * kMidpointReach + width + 1));
+    float* row = scratch.data() + kMidpointReach;
+    float* spread = row + needed + kMidpointReach;
+    const int count = std::min(needed, from.width);
+    for (int v = 0; v < height; ++v) {
+        const auto source = [&](int above) {
+            return from.row(std::clamp(v / 2 + above, 0, from.height - 1));
+        };
+        if (v % 2 == 0)
+            std::copy_n(source(0), count, row);
+        else
+            between_rows(
+                {source(-2), source(-1), source(0), source(1), source(2), source(3)}, count, row
+            );
+        std::fill(row - kMidpointReach, row, row[0]);
+        std::fill(row + count, row + needed + kMidpointReach, row[count - 1]);
+        spread_row(row, needed, spread);
+        std::copy_n(spread, width, to.row(v));
     }
 }
 

@@ -14,6 +14,8 @@ constexpr float kSecondTurn = 0.8F;     // of the highest bin: another keypoint
 constexpr int kCells = 4, kAngles = 8;  // of the descriptor (6.2)
 constexpr float kCell_sigmas = 3.0F;
 constexpr float kMostOfOne = 0.2F;  // no number outweighs all others (6.1)
+// A layer blurred by 2 px says nothing new in every second pixel; Lowe takes 16 x 16 samples (6.1).
+constexpr float kCoarseCell = 6.0F;  // px
 constexpr float kPi = std::numbers::pi_v<float>;
 
 /// atan2 in turns of 2π, 0 to 1, to 2e-5: Abramowitz & Stegun 4.4.47, without a branch.
@@ -129,8 +131,9 @@ void Sift::describe(const Keypoint2d& keypoint, Descriptor& descriptor) {
     // Two cells more on each side and an angle more at the end take what falls outside.
     constexpr int kWide = kCells + 2, kLong = kAngles + 2;
     std::array<float, static_cast<std::size_t>(kWide * kWide * kLong)> histogram{};
+    const int step = cell >= kCoarseCell ? 2 : 1;
     for (int v = std::max(1, middle_y - radius); v <= std::min(image.height - 2, middle_y + radius);
-         ++v) {
+         v += step) {
         const float dy = static_cast<float>(v) - keypoint.y;
         // Where |rotated coordinates| < (kCells + 1)/2 along this row.
         constexpr float kHalf = 0.5F * (kCells + 1);
@@ -162,7 +165,7 @@ void Sift::describe(const Keypoint2d& keypoint, Descriptor& descriptor) {
             window_[0].data(),
             window_[1].data()
         );
-        for (int i = 0; i < count; ++i) {
+        for (int i = 0; i < count; i += step) {
             const float dx = static_cast<float>(from + i) - keypoint.x;
             const auto at = static_cast<std::size_t>(i);
             const float column = c * dx + s * dy + 0.5F * kCells + 0.5F;

@@ -131,11 +131,13 @@ void Sift::build() {
         layer(0, 0),
         scratch_
     );
+    const int above = settings_.scales_per_octave + 1;  // these layers the next octave has as well
     const float ratio = std::exp2(1.0F / static_cast<float>(settings_.scales_per_octave));
     for (int octave = 0; octave < octaves_; ++octave) {
         if (octave > 0) halved(layer(octave - 1, settings_.scales_per_octave), layer(octave, 0));
+        const int end = octave + 1 < octaves_ ? above : per_octave;
         float sigma = settings_.sigma;
-        for (int i = 1; i < per_octave; ++i, sigma *= ratio)
+        for (int i = 1; i < end; ++i, sigma *= ratio)
             blur(
                 layer(octave, i - 1),
                 sigma * std::sqrt(ratio * ratio - 1.0F),
@@ -143,6 +145,18 @@ void Sift::build() {
                 scratch_
             );
     }
+    // The widest blurs, half of all the work, are done at half the size and brought back.
+    for (int octave = octaves_ - 2; octave >= 0; --octave)
+        for (int i = above; i < per_octave; ++i) {
+            const GreyImage& full = layer(octave, 0);
+            unhalved(
+                layer(octave + 1, i - settings_.scales_per_octave),
+                full.width,
+                full.height,
+                layer(octave, i),
+                scratch_
+            );
+        }
 }
 
 void Sift::find_extrema(int octave) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <set>
 
 #include "pipeline/core/disparity.hpp"
@@ -65,13 +66,15 @@ std::optional<TextureModel> TextureModel::learn(
 
 void TextureModel::add_pair(const RgbdFrame& frame, const SpotFinder& scene, const Match& match) {
     const Keypoint2d& spot = scene.spots()[match.scene];
-    const auto traced = cameras_.trace(frame.depth, spot.u, spot.v);
-    if (!traced) return;
+    auto& traced = traced_[match.scene];
+    if (!traced) traced.emplace(cameras_.trace(frame.depth, spot.u, spot.v));
+    if (!*traced) return;
+    const TracedPoint& point_cam = **traced;
     const Point& point = points_[match.model];
     pairs_.push_back(
         {point.p_obj,
-         traced->p_cam,
-         point.covariance + covariance_of(*traced, spot, camera_.colour)}
+         point_cam.p_cam,
+         point.covariance + covariance_of(point_cam, spot, camera_.colour)}
     );
 }
 
@@ -91,7 +94,12 @@ std::optional<RigidFit> TextureModel::fit(
 void TextureModel::match_near(const SpotFinder& scene, const Eigen::Isometry3d& T_cam_obj) {
     matches_.clear();
     const auto spots = scene.spots();
-    std::vector<std::uint32_t> taken(spots.size(), 0);  // place in matches_, from 1
+    taken_.assign(spots.size(), 0);  // place in matches_, from 1
+    by_row_.resize(spots.size());
+    std::iota(by_row_.begin(), by_row_.end(), 0U);
+    std::sort(by_row_.begin(), by_row_.end(), [&](std::uint32_t a, std::uint32_t b) {
+        return spots[a].v < spots[b].v;
+    });
     for (std::uint32_t m = 0; m < points_.size(); ++m) {
         const Eigen::Vector3d p_cam = T_cam_obj * points_[m].p_obj;
         if (p_cam.z() <= 0.0) continue;
@@ -100,10 +108,16 @@ void TextureModel::match_near(const SpotFinder& scene, const Eigen::Isometry3d& 
         float best = scene.most_difference();
         std::uint32_t nearest = 0;
         bool found = false;
-        for (std::uint32_t s = 0; s < spots.size(); ++s) {
-            if (std::abs(spots[s].u - at.x()) > kNear_px ||
-                std::abs(spots[s].v - at.y()) > kNear_px)
-                continue;
+        const auto first = std::lower_bound(
+            by_row_.begin(),
+            by_row_.end(),
+            at.y() - kNear_px,
+            [&](std::uint32_t s, float v) { return spots[s].v < v; }
+        );
+        for (auto next = first; next != by_row_.end(); ++next) {
+            const std::uint32_t s = *next;
+            if (spots[s].v > at.y() + kNear_px) break;
+            if (std::abs(spots[s].u - at.x()) > kNear_px) continue;
             const float ratio = spots[s].scale_px / scale_px;
             if (ratio > kMostScaleRatio || ratio * kMostScaleRatio < 1.0F) continue;
             const float difference = spots_->difference(m, scene, s);
@@ -113,11 +127,11 @@ void TextureModel::match_near(const SpotFinder& scene, const Eigen::Isometry3d& 
             found = true;
         }
         if (!found) continue;
-        if (taken[nearest] == 0) {
+        if (taken_[nearest] == 0) {
             matches_.push_back({m, nearest, best});
-            taken[nearest] = static_cast<std::uint32_t>(matches_.size());
-        } else if (best < matches_[taken[nearest] - 1].distance) {
-            matches_[taken[nearest] - 1] = {m, nearest, best};
+            taken_[nearest] = static_cast<std::uint32_t>(matches_.size());
+        } else if (best < matches_[taken_[nearest] - 1].distance) {
+            matches_[taken_[nearest] - 1] = {m, nearest, best};
         }
     }
 }
@@ -128,6 +142,7 @@ std::optional<TexturePose> TextureModel::pose_in(
     RigidFitSettings settings;
     settings.fewest_inliers = fewest_inliers;
     settings.fewest_share = kFewestShare;
+    traced_.assign(scene.spots().size(), std::nullopt);
     auto first = fit(frame, scene, spots_->match_in(scene), settings);
     if (!first) return std::nullopt;
     TexturePose pose;

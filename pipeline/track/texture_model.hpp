@@ -69,6 +69,9 @@ private:
     double radius_m_ = 0.0;
     std::vector<Match> matches_;
     std::vector<PointPair> pairs_, first_pairs_;
+    /// Of each spot in the scene that was traced, where it lies; nothing if on no surface.
+    std::vector<std::optional<std::optional<TracedPoint>>> traced_;
+    std::vector<std::uint32_t> by_row_, taken_;
 };
 
 }  // namespace kinectlab
