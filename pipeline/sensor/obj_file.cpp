@@ -47,17 +47,18 @@ Result<MeshFile> parse_obj(std::span<const std::uint8_t> file, const std::string
     TriangleMesh out;
     Text text(file);
     for (std::string_view line; text.next_line(line);) {
+        const std::string_view whole = line;
         const auto key = take_word(line);
         if (key == "v" && !take_vertex(line, out))
             return bad_line(
-                name, text.line_number(), "is no vertex: v" + shown(line), "give v and 3 numbers"
+                name, text.line_number(), "is no vertex: " + shown(whole), "give v and 3 numbers"
             );
         if (key == "f" && !take_face(line, out))
             return bad_line(
                 name,
                 text.line_number(),
                 "is no face of the " + std::to_string(out.vertices.size()) +
-                    " vertices above it: f" + shown(line),
+                    " vertices above it: " + shown(whole),
                 "give f and 3 to 255 of their numbers, counted from 1"
             );
         if (out.vertices.size() > kMaxMeshVertices || out.triangles.size() > kMaxMeshTriangles)

@@ -137,18 +137,32 @@ std::vector<double> read_numbers(
     return numbers;
 }
 
-int to_pixel(double value) {
+int to_whole(double value) {
     return static_cast<int>(std::clamp(value, -1e6, 1e6));
 }
 
+std::vector<int> read_pixels(
+    ObjectReader& reader, const std::string& key, std::size_t count, const std::string& names
+) {
+    std::vector<int> pixels;
+    for (const double number : read_numbers(reader, key, count, names + " in pixels")) {
+        if (number != std::floor(number))
+            reader.refuse(
+                key, "has " + nlohmann::json(number).dump(), "give " + names + " in whole pixels"
+            );
+        pixels.push_back(to_whole(number));
+    }
+    return pixels;
+}
+
 PictureBox read_box(ObjectReader& reader) {
-    const auto box = read_numbers(reader, "box", 4, "[left, top, width, height] in pixels");
-    return {to_pixel(box[0]), to_pixel(box[1]), to_pixel(box[2]), to_pixel(box[3])};
+    const auto box = read_pixels(reader, "box", 4, "[left, top, width, height]");
+    return {box[0], box[1], box[2], box[3]};
 }
 
 PictureBox read_click(ObjectReader& reader) {
-    const auto click = read_numbers(reader, "click", 2, "[column, row] in pixels");
-    return {to_pixel(click[0]), to_pixel(click[1]), 1, 1};
+    const auto click = read_pixels(reader, "click", 2, "[column, row]");
+    return {click[0], click[1], 1, 1};
 }
 
 void read_range(ObjectReader& reader, const std::string& key, double& low, double& high) {
@@ -179,7 +193,7 @@ int read_fewest_spots(ObjectReader& reader, int otherwise) {
     const double fewest = reader.number_or("fewest_spots", otherwise);
     if (fewest != std::floor(fewest))
         reader.refuse("fewest_spots", "is no whole number", "give a whole number from 4 to 1000");
-    return to_pixel(fewest);
+    return to_whole(fewest);
 }
 
 /// Where and when an object is looked at first.

@@ -179,6 +179,7 @@ TEST(MeshFile, WrongIndicesNameTheLine) {
             parse_obj(bytes_of(std::string("v 0 0 0\nv 1 0 0\nv 0 1 0\n") + face), "m");
         ASSERT_FALSE(read.has_value()) << face;
         EXPECT_EQ(read.error().field, "m:4") << face;
+        EXPECT_NE(read.error().message.find('"' + std::string(face) + '"'), std::string::npos);
     }
 }
 

@@ -103,6 +103,14 @@ INSTANTIATE_TEST_SUITE_P(
             R"({"objects":[{"name":"=1+1","method":"change"}]})", "objects[0].name", "begin with"},
         Wrong{R"({"objects":[{"name":"a","method":"shpere"}]})", "objects[0].method", "sphere"},
         Wrong{
+            R"({"objects":[{"name":"a","method":"texture","box":[10.7,5,20,20]}]})",
+            "objects[0].box",
+            "whole pixels"},
+        Wrong{
+            R"({"objects":[{"name":"a","method":"colour","click":[10,5.5]}]})",
+            "objects[0].click",
+            "whole pixels"},
+        Wrong{
             R"({"objects":[{"name":"a","method":"sphere","radius":1}]})",
             "objects[0].radius",
             "radius_m"},
