@@ -10,12 +10,15 @@ Figures measure_frame_to_pose();
 Figures measure_sphere_accuracy();
 Figures measure_shape_regions();
 Figures measure_shape_scene();
+Figures measure_planes();
+Figures measure_hough();
 Figures measure_labelled_scenes();
 Figures measure_outliers();
 Figures measure_moving_least_squares();
 Figures measure_normals();
 Figures measure_octree_change();
 Figures measure_organised_change();
+Figures measure_median_reference();
 Figures measure_depth_cut();
 Figures measure_gravity_from_positions();
 Figures measure_gravity_khoshelham();
@@ -57,12 +60,15 @@ inline constexpr std::array kMeasurements{
     Measurement{"sphere centre accuracy", measure_sphere_accuracy},
     Measurement{"sphere, cylinder, cone, region of interest", measure_shape_regions},
     Measurement{"whole scene, four kinds of shape", measure_shape_scene},
+    Measurement{"plane, region of interest, under a ball", measure_planes},
+    Measurement{"Hough transform in a scene", measure_hough},
     Measurement{"real labelled scenes, shapes", measure_labelled_scenes},
     Measurement{"outliers", measure_outliers},
     Measurement{"moving least squares", measure_moving_least_squares},
     Measurement{"normals", measure_normals},
     Measurement{"octree change", measure_octree_change},
     Measurement{"change in the image grid", measure_organised_change},
+    Measurement{"reference, the median of seconds, rolling background", measure_median_reference},
     Measurement{"depth cut", measure_depth_cut},
     Measurement{"g, white positions, analysis of 900 positions", measure_gravity_from_positions},
     Measurement{"g, khoshelham noise", measure_gravity_khoshelham},

@@ -10,8 +10,9 @@
 namespace kinectlab::bench {
 
 /// OpenCV's point pair features (Drost et al. 2010), its surface_matching module: model and scene
-/// sampled at a twentieth of the object's diameter, as its documentation has it; the five poses
-/// with most votes are refined by its ICP, the one with the least residual is taken.
+/// sampled at a twentieth of the object's size, as its documentation has it for the model, and
+/// pairs of every fiftieth point of the scene; the five poses with most votes are refined by its
+/// ICP, the one with the least residual is taken.
 class PpfDetector {
 public:
     explicit PpfDetector(const OrientedPoints& model);

@@ -15,7 +15,7 @@ namespace kinectlab::bench {
 namespace {
 
 constexpr int kScenes = 36;
-constexpr int kPeerScenes = 12;   // the first ones: the peers take seconds for each
+constexpr int kPeerScenes = 6;    // the first ones: a peer takes many seconds for each
 constexpr double kRightM = 0.02;  // of the centre
 constexpr double kRightRad = 10.0 * M_PI / 180.0;
 
