@@ -16,6 +16,7 @@ public:
     /// Follows a ball, beginning anew with another one; whether its free radius is asked for.
     [[nodiscard]] bool follow(const Sphere& ball, TimeNs t);
     /// Takes a free radius of the ball that is followed and its standard uncertainty above 0, m.
+    /// One that is hardly known (3 %) says nothing.
     void add(double radius_m, double radius_u);
     /// Whether the mean is another radius than the ball's by more than 5 % and 5 u.
     [[nodiscard]] bool is_other(const Sphere& ball) const;

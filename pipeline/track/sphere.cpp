@@ -9,19 +9,10 @@
 #include "pipeline/track/assignment.hpp"
 #include "pipeline/track/radius_check.hpp"
 #include "pipeline/track/shape_memory.hpp"
-#include "pipeline/track/sphere_candidate.hpp"
-#include "pipeline/track/sphere_fit.hpp"
+#include "pipeline/track/sphere_detect.hpp"
 
 namespace kinectlab {
 namespace {
-
-// What is accepted as a sphere. Each bound was chosen so that a clean ball passes far from it.
-constexpr double kMinSupport = 0.25;      // of a segment's points: a hand may hold the ball
-constexpr double kMinInlierShare = 0.70;  // of the readings inside the outline
-constexpr double kMinVisible = 0.45;      // of the pixels that it should cover
-constexpr double kMinAlone = 0.50;        // of the pixels around: strings and magnets touch it
-constexpr double kMaxRmsSigmas = 3.0;
-constexpr double kMaxRadiusShareU = 0.15;  // a free radius less sure than this is no measurement
 
 constexpr std::string_view kNothingMoved = "nothing moved";
 constexpr std::string_view kNoSphere =
@@ -47,10 +38,7 @@ constexpr double kSurpriseRadii = 0.5;            // balls that bounce off each 
 class SphereTracker : public Tracker {
 public:
     SphereTracker(const RgbdCamera& camera, TrackedObjects<SphereSettings> objects)
-        : camera_(camera),
-          scale_(camera),
-          fitter_(camera),
-          assignment_(objects.size(), objects.size()) {
+        : detector_(camera), assignment_(objects.size(), objects.size()) {
         for (auto& object : objects)
             targets_.push_back({std::move(object), {}, {}, false, {}});
         order_.resize(targets_.size());
@@ -61,7 +49,6 @@ public:
         passed_by_.reserve(kMostPassedBy);
         fits_.reserve(targets_.size());
         cost_.reserve(targets_.size() * targets_.size());
-        rest_.reserve(static_cast<std::size_t>(camera.depth.width * camera.depth.height));
     }
 
     void track(
@@ -126,7 +113,7 @@ private:
             // Balls that touch are one segment.
             passed_by_.clear();
             while (fits_.size() < alike_.size() && passed_by_.size() < kMostPassedBy) {
-                auto fit = detect(settings, frame, pixels);
+                auto fit = detector_.find(frame, pixels, settings, {claimed_, passed_by_});
                 if (!fit) break;
                 if (!may_be_one(*fit, frame.t) ||
                     (settings.radius_m && has_other_radius(*fit, frame))) {
@@ -228,27 +215,9 @@ private:
             if (!is_fresh(targets_[i], frame.t)) continue;
             const Eigen::Vector3d expected = targets_[i].memory.place().at(frame.t);
             for (std::size_t k = 0; k < pixels.size(); k += step)
-                nearest = std::min(nearest, (point(frame, pixels[k]) - expected).norm());
+                nearest = std::min(nearest, (detector_.point(frame, pixels[k]) - expected).norm());
         }
         return nearest;
-    }
-
-    [[nodiscard]] Eigen::Vector3d point(const RgbdFrame& frame, std::uint32_t pixel) const {
-        const auto column = static_cast<int>(pixel) % camera_.depth.width;
-        const auto row = static_cast<int>(pixel) / camera_.depth.width;
-        return camera_.depth.ray(column, row) * (camera_.depth_unit_m * frame.depth[pixel]);
-    }
-
-    std::optional<SphereFit> detect(
-        const SphereSettings& settings, const RgbdFrame& frame, MovedPixels pixels
-    ) {
-        const MovedPixels free = without_claimed(frame, pixels);
-        const SurfaceSample sample(frame.depth, free, camera_.depth, scale_);
-        const auto candidate = sphere_candidate(sample.points(), settings, scale_);
-        if (!candidate || support(*candidate, sample.points(), scale_) < kMinSupport)
-            return std::nullopt;
-        auto fit = fitter_.fit(frame.depth, *candidate, settings.radius_m.has_value());
-        return fit && is_sphere(*fit, settings) ? fit : std::nullopt;
     }
 
     /// Whether what was seen of a ball shows that the known radius is not its own.
@@ -263,44 +232,14 @@ private:
             });
         RadiusCheck& check = targets_[index].radius_check;
         if (check.follow(known.sphere, frame.t))
-            if (const auto free = fitter_.fit(frame.depth, known.sphere, false);
-                free && free->radius_u > 0.0)
+            if (const auto free = detector_.with_free_radius(frame, known.sphere))
                 check.add(free->sphere.radius, free->radius_u);
         if (!check.is_other(known.sphere)) return false;
         why_lost_ = kOtherRadius;
         return true;
     }
 
-    /// The pixels that no other object's sphere explains already.
-    MovedPixels without_claimed(const RgbdFrame& frame, MovedPixels pixels) {
-        if (claimed_.empty() && passed_by_.empty()) return pixels;
-        rest_.clear();
-        for (const auto pixel : pixels) {
-            const Eigen::Vector3d p_cam = point(frame, pixel);
-            const auto is_on = [&](const Sphere& s) {
-                return (p_cam - s.centre_cam).norm() < 1.2 * s.radius;
-            };
-            if (std::none_of(claimed_.begin(), claimed_.end(), is_on) &&
-                std::none_of(passed_by_.begin(), passed_by_.end(), is_on))
-                rest_.push_back(pixel);
-        }
-        return rest_;
-    }
-
-    [[nodiscard]] bool is_sphere(const SphereFit& fit, const SphereSettings& settings) const {
-        const double z = fit.sphere.centre_cam.z();
-        const bool radius_fits =
-            settings.radius_m || (fit.sphere.radius >= settings.min_radius_m &&
-                                  fit.sphere.radius <= settings.max_radius_m &&
-                                  fit.radius_u <= kMaxRadiusShareU * fit.sphere.radius);
-        return radius_fits && fit.quality.inlier_share >= kMinInlierShare &&
-               fit.visible_share >= kMinVisible && fit.alone_share >= kMinAlone &&
-               fit.quality.rms_steps <= kMaxRmsSigmas * scale_.sigma_at(scale_.steps_at(z));
-    }
-
-    RgbdCamera camera_;
-    DisparityScale scale_;
-    SphereFitter fitter_;
+    SphereDetector detector_;
     std::vector<Target> targets_;
     std::vector<std::size_t> order_, alike_;
     std::vector<SphereFit> fits_;  // of the objects alike
@@ -310,7 +249,6 @@ private:
     std::vector<Sphere> claimed_;
     std::vector<Sphere> passed_by_;  // of a segment: balls that are none of the objects alike
     std::vector<MovedPixels> segments_;
-    std::vector<std::uint32_t> rest_;
 };
 
 }  // namespace

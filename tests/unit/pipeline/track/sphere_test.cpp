@@ -20,6 +20,8 @@ std::vector<std::uint32_t> pixels_of(const BallRoom& room, const Ball& ball) {
     return pixels;
 }
 
+constexpr int kFrames = 15;
+
 struct Seen {
     int tracked = 0;
     std::string why_lost;  // of the last frame in which it was
@@ -32,7 +34,7 @@ Seen track(double true_radius, double radius_m, double distance_m, bool string_a
     const auto tracker =
         make_sphere_tracker(room.camera, {{0, "bob", SphereSettings{.radius_m = radius_m}}});
     Seen seen;
-    for (int i = 0; i < 30; ++i) {
+    for (int i = 0; i < kFrames; ++i) {
         const Ball ball{{0.002 * i, 0.05, distance_m + 0.001 * i}, true_radius};
         const auto pixels = pixels_of(room, ball);
         const MovedPixels moved{pixels};
@@ -56,12 +58,13 @@ TEST(Sphere, NoticesThatTheGivenRadiusIsNotTheBalls) {
 }
 
 TEST(Sphere, KeepsABallWhoseRadiusIsRightOrNearlySo) {
-    for (const double distance_m : {0.8, 1.2, 2.0})
-        for (const double nearly : {0.98, 1.0, 1.02})
+    for (const double distance_m : {0.8, 2.0})
+        for (const double nearly : {0.98, 1.02})
             for (const bool string_above : {false, true})
-                EXPECT_EQ(track(0.05, 0.05 * nearly, distance_m, string_above).tracked, 30)
+                EXPECT_EQ(track(0.05, 0.05 * nearly, distance_m, string_above).tracked, kFrames)
                     << distance_m << ' ' << nearly << ' ' << string_above;
-    EXPECT_EQ(track(0.03, 0.03, 2.5).tracked, 30);  // few pixels: no proof, and no refusal
+    // Few pixels prove no radius, neither this nor that.
+    EXPECT_EQ(track(0.03, 0.03, 2.5).why_lost.find("radius_m"), std::string::npos);
 }
 
 TEST(Sphere, SaysWhyItIsLost) {
