@@ -1,7 +1,9 @@
 #include "pipeline/features/normals.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
 
 #include "pipeline/core/hot_loop.hpp"
 #include "pipeline/core/number_text.hpp"
@@ -14,7 +16,7 @@ namespace {
 
 constexpr int kMargin = NormalSettings::kMostHalfWindow + 8;  // on all sides, so that no loop clips
 
-/// Inverse depths in a frame of zeros, which stand for no reading.
+/// Inverse depths in a frame of what stands for no reading.
 struct Inverse {
     int width, height, stride;
     std::vector<float> values;
@@ -27,14 +29,14 @@ struct Inverse {
     }
 };
 
-Inverse framed(int width, int height) {
+Inverse framed(int width, int height, float value) {
     const int stride = width + 2 * kMargin + 8;
     return {
         width,
         height,
         stride,
         std::vector<float>(
-            static_cast<std::size_t>(stride) * static_cast<std::size_t>(height + 2 * kMargin)
+            static_cast<std::size_t>(stride) * static_cast<std::size_t>(height + 2 * kMargin), value
         )};
 }
 
@@ -47,10 +49,12 @@ struct Jump {
     float least, share;
 };
 
-/// 1 where a pixel has no reading or leaves its surface on the way to the right or downwards.
-KINECTLAB_HOT_LOOP void mark_edges(
-    const float* row, const float* below, int n, Jump jump, float* edge
+/// A row without the pixels that have no reading or leave their surface on the way to the right or
+/// downwards: these become NaN, and so does every sum that meets one.
+KINECTLAB_HOT_LOOP void leave_out_edges(
+    const float* row, const float* below, int n, Jump jump, float* smooth
 ) {
+    const float none = std::numeric_limits<float>::quiet_NaN();
     for (int i = 0; i < n; ++i) {
         const float s = row[i];
         const float share = jump.share * s;
@@ -58,36 +62,31 @@ KINECTLAB_HOT_LOOP void mark_edges(
         const float right = std::abs(s - row[i + 1]);
         const float down = std::abs(s - below[i]);
         const float leap = right > down ? right : down;
-        const float broken = leap > most ? 1.0F : 0.0F;
-        edge[i] = s > 0.0F ? broken : 1.0F;
+        const float unbroken = leap > most ? none : s;
+        smooth[i] = s > 0.0F ? unbroken : none;
     }
 }
 
-/// Sums over the rows of the window, for whole rows of pixels: s, s dv, and the edges.
+/// Sums over the rows of the window, for whole rows of pixels: s and s dv.
 struct RowSums {
-    std::vector<float> s, s_dv, edges;
-    explicit RowSums(std::size_t n) : s(n), s_dv(n), edges(n) {}
+    std::vector<float> s, s_dv;
+    explicit RowSums(std::size_t n) : s(n), s_dv(n) {}
 };
 
-KINECTLAB_HOT_LOOP void add_rows(
-    const Inverse& inverse, const Inverse& edges, int v, int half, RowSums& sums
-) {
+KINECTLAB_HOT_LOOP void add_rows(const Inverse& smooth, int v, int half, RowSums& sums) {
     const int from = -kMargin + 8;
-    const int n = inverse.width + kMargin - 8;
+    const int n = smooth.width + kMargin - 8;
     for (int i = from; i < n; i += 8) {
-        Float8 s = load8(inverse.row(v) + i);
+        Float8 s = load8(smooth.row(v) + i);
         Float8 s_dv{};
-        Float8 edge = load8(edges.row(v) + i);
         for (int dv = 1; dv <= half; ++dv) {
-            const Float8 below = load8(inverse.row(v + dv) + i);
-            const Float8 above = load8(inverse.row(v - dv) + i);
+            const Float8 below = load8(smooth.row(v + dv) + i);
+            const Float8 above = load8(smooth.row(v - dv) + i);
             s += below + above;
             s_dv += (below - above) * static_cast<float>(dv);
-            edge += load8(edges.row(v + dv) + i) + load8(edges.row(v - dv) + i);
         }
         store8(sums.s.data() + kMargin + i, s);
         store8(sums.s_dv.data() + kMargin + i, s_dv);
-        store8(sums.edges.data() + kMargin + i, edge);
     }
 }
 
@@ -108,22 +107,17 @@ struct Slope {
 };
 
 KINECTLAB_INLINE void put_normals(
-    const Slope& slope,
-    const Float8& u,
-    const Mask8& sound,
-    const RowOptics& optics,
-    int at,
-    RowOut out
+    const Slope& slope, const Float8& u, const RowOptics& optics, int at, RowOut out
 ) {
+    const float per_fx = 1.0F / optics.fx;
     const Float8 x = slope.a * optics.fx;
     const Float8 y = slope.b * optics.fy;
-    const Float8 z = slope.c - x * ((u - optics.cx) / optics.fx) - y * optics.ray_y;
+    const Float8 z = slope.c - x * ((u - optics.cx) * per_fx) - y * optics.ray_y;
     const Float8 squared = x * x + y * y + z * z;
     Float8 root;
     for (int lane = 0; lane < 8; ++lane)
         root[lane] = std::sqrt(squared[lane]);
-    const Float8 none = all8(std::numeric_limits<float>::quiet_NaN());
-    const Float8 scale = choose8(sound, -1.0F / root, none);
+    const Float8 scale = -1.0F / root;
     store8(out.x + at, x * scale);
     store8(out.y + at, y * scale);
     store8(out.z + at, z * scale);
@@ -135,35 +129,46 @@ KINECTLAB_HOT_LOOP void fit_smooth(
 ) {
     const Float8 lanes = {0, 1, 2, 3, 4, 5, 6, 7};
     const int side = 2 * half + 1;
-    const auto n = static_cast<float>(side * side);
-    const auto second = static_cast<float>(side * half * (half + 1) * side / 3);  // Σ du²
+    const float per_n = 1.0F / static_cast<float>(side * side);
+    const float per_second = 3.0F / static_cast<float>(side * half * (half + 1) * side);  // Σ du²
     for (int u = 0; u < width; u += 8) {
         const float* s = sums.s.data() + kMargin + u;
         const float* s_dv = sums.s_dv.data() + kMargin + u;
-        const float* edges = sums.edges.data() + kMargin + u;
         Float8 c = load8(s);
         Float8 a{};
         Float8 b = load8(s_dv);
-        Float8 edge = load8(edges);
         for (int du = 1; du <= half; ++du) {
             const Float8 right = load8(s + du);
             const Float8 left = load8(s - du);
             c += right + left;
             a += (right - left) * static_cast<float>(du);
             b += load8(s_dv + du) + load8(s_dv - du);
-            edge += load8(edges + du) + load8(edges - du);
         }
-        const Slope slope{a / second, b / second, c / n};
-        put_normals(slope, lanes + static_cast<float>(u), edge == 0.0F, optics, u, out);
+        const Slope slope{a * per_second, b * per_second, c * per_n};
+        put_normals(slope, lanes + static_cast<float>(u), optics, u, out);
     }
 }
 
 /// Which pixels of a window are looked at where it holds an edge: in a wide one every other,
-/// because the sensor correlates windows of pixels, so that neighbours tell little new.
+/// because the sensor correlates windows of pixels, so that neighbours tell little new; and a disc,
+/// because its corners show another surface most often.
 struct Taps {
     int half, step;
-    explicit Taps(int half_window) : half(half_window), step(half_window >= 6 ? 2 : 1) {}
-    [[nodiscard]] int count() const { return (2 * half / step + 1) * (2 * half / step + 1); }
+    std::array<int, 2 * NormalSettings::kMostHalfWindow + 1> reach{};  ///< of each row, -1 for none
+    int count = 0;
+
+    explicit Taps(int half_window) : half(half_window), step(half_window >= 6 ? 2 : 1) {
+        for (int dv = -half; dv <= half; dv += step) {
+            int most = half;
+            while (most * most + dv * dv > half * (half + 1))
+                most -= step;
+            reach[static_cast<std::size_t>(dv + half)] = most;
+            count += 2 * ((most - first()) / step + 1) - (first() == 0 ? 1 : 0);
+        }
+    }
+    /// Nearest column to the middle: 0, or 1 where every other one leaves the middle out.
+    [[nodiscard]] int first() const { return half % step; }
+    [[nodiscard]] int reach_of(int dv) const { return reach[static_cast<std::size_t>(dv + half)]; }
 };
 
 /// Sums over the neighbours that continue each pixel's own surface, eight pixels side by side.
@@ -171,25 +176,41 @@ struct Windows {
     Float8 n{}, u{}, v{}, uu{}, uv{}, vv{}, s{}, su{}, sv{};
 };
 
-KINECTLAB_INLINE Windows
-sum_windows(const Inverse& inverse, int u, int v, Taps taps, const Float8& s0, const Float8& most) {
+/// One tap: whether it counts, as 1 or 0, and how far it is from the middle's reading if it does.
+struct Tap {
+    Float8 one, off;
+};
+
+KINECTLAB_INLINE Tap tap(const float* at, const Float8& s0, const Float8& most) {
+    const Float8 off = load8(at) - s0;
+    const Mask8 in = abs8(off) <= most;
+    return {keep8(all8(1.0F), in), keep8(off, in)};
+}
+
+/// `most` is below s0, so that no reading, a zero, is always too far off.
+KINECTLAB_INLINE Windows sum_windows(
+    const Inverse& inverse, int u, int v, const Taps& taps, const Float8& s0, const Float8& most
+) {
     Windows sums;
     for (int dv = -taps.half; dv <= taps.half; dv += taps.step) {
         const float* row = inverse.row(v + dv) + u;
         Float8 n{}, mu{}, muu{}, s{}, su{};
-        const auto add = [&](const Float8& read, float x) __attribute__((always_inline)) {
-            const Float8 off = read - s0;
-            const Mask8 in = (abs8(off) <= most) & (read > 0.0F);
-            const Float8 one = keep8(all8(1.0F), in);
-            const Float8 kept = keep8(off, in);
-            n += one;
-            mu += one * x;
-            muu += one * (x * x);
-            s += kept;
-            su += kept * x;
-        };
-        for (int du = -taps.half; du <= taps.half; du += taps.step)
-            add(load8(row + du), static_cast<float>(du));
+        if (taps.first() == 0) {
+            const Tap middle = tap(row, s0, most);
+            n = middle.one;
+            s = middle.off;
+        }
+        const int reach = taps.reach_of(dv);
+        for (int du = taps.first() == 0 ? taps.step : 1; du <= reach; du += taps.step) {
+            const Tap right = tap(row + du, s0, most), left = tap(row - du, s0, most);
+            const auto x = static_cast<float>(du);
+            const Float8 both = right.one + left.one;
+            n += both;
+            muu += both * (x * x);
+            mu += (right.one - left.one) * x;
+            s += right.off + left.off;
+            su += (right.off - left.off) * x;
+        }
         const auto y = static_cast<float>(dv);
         sums.n += n;
         sums.u += mu;
@@ -207,11 +228,10 @@ sum_windows(const Inverse& inverse, int u, int v, Taps taps, const Float8& s0, c
 /// The pixels of a row that have no normal yet, each by its own neighbours: the 3x3 normal
 /// equations about the neighbours' centre.
 KINECTLAB_HOT_LOOP void fit_rest(
-    const Inverse& inverse, int v, int half, Jump jump, const RowOptics& optics, RowOut out
+    const Inverse& inverse, int v, const Taps& taps, Jump jump, const RowOptics& optics, RowOut out
 ) {
     const Float8 lanes = {0, 1, 2, 3, 4, 5, 6, 7};
-    const Taps taps(half);
-    const float needed = std::max(3.0F, 0.25F * static_cast<float>(taps.count()));
+    const float needed = std::max(3.0F, 0.25F * static_cast<float>(taps.count));
     for (int u = 0; u < inverse.width; u += 8) {
         const Float8 s0 = load8(inverse.row(v) + u);
         const Float8 fitted = load8(out.z + u);
@@ -222,7 +242,9 @@ KINECTLAB_HOT_LOOP void fit_rest(
         if (any == 0) continue;
 
         const Float8 share = s0 * jump.share;
-        const Float8 most = choose8(share > jump.least, share, all8(jump.least));
+        const Float8 wide = choose8(share > jump.least, share, all8(jump.least));
+        const Float8 below_s0 = 0.999F * s0;
+        const Float8 most = choose8(wide < below_s0, wide, below_s0);
         const Windows w = sum_windows(inverse, u, v, taps, s0, most);
         const Float8 inverse_n = 1.0F / w.n;
         const Float8 uu = w.uu - w.u * w.u * inverse_n;
@@ -259,9 +281,8 @@ public:
           jump_{
               static_cast<float>(settings.max_jump_per_m),
               static_cast<float>(settings.max_jump_share)},
-          inverse_(framed(cloud.width, cloud.height)),
-          edges_(framed(cloud.width, cloud.height)) {
-        std::fill(edges_.values.begin(), edges_.values.end(), 1.0F);
+          inverse_(framed(cloud.width, cloud.height, 0.0F)),
+          smooth_(framed(cloud.width, cloud.height, std::numeric_limits<float>::quiet_NaN())) {
         for (int v = 0; v < cloud.height; ++v)
             invert(
                 cloud.z.data() + static_cast<std::ptrdiff_t>(v) * cloud.width,
@@ -269,7 +290,9 @@ public:
                 inverse_.row(v)
             );
         for (int v = 0; v < cloud.height; ++v)
-            mark_edges(inverse_.row(v), inverse_.row(v + 1), cloud.width, jump_, edges_.row(v));
+            leave_out_edges(
+                inverse_.row(v), inverse_.row(v + 1), cloud.width, jump_, smooth_.row(v)
+            );
     }
 
     NormalImage find() {
@@ -277,6 +300,7 @@ public:
         const auto width = static_cast<std::size_t>(image.width);
         for (auto* axis : {&image.x, &image.y, &image.z})
             axis->resize(width * static_cast<std::size_t>(image.height));
+        const Taps taps(half_);
         RowSums sums(static_cast<std::size_t>(inverse_.stride) + 16);
         std::vector<float> row(3 * (width + 8));
         const RowOut out{row.data(), row.data() + width + 8, row.data() + 2 * (width + 8)};
@@ -286,9 +310,9 @@ public:
                 static_cast<float>(camera_.fy),
                 static_cast<float>(camera_.cx),
                 static_cast<float>((v - camera_.cy) / camera_.fy)};
-            add_rows(inverse_, edges_, v, half_, sums);
+            add_rows(smooth_, v, half_, sums);
             fit_smooth(sums, image.width, half_, optics, out);
-            fit_rest(inverse_, v, half_, jump_, optics, out);
+            fit_rest(inverse_, v, taps, jump_, optics, out);
             const auto to = static_cast<std::ptrdiff_t>(v) * image.width;
             std::copy_n(out.x, width, image.x.begin() + to);
             std::copy_n(out.y, width, image.y.begin() + to);
@@ -301,7 +325,7 @@ private:
     Pinhole camera_;
     int half_;
     Jump jump_;
-    Inverse inverse_, edges_;
+    Inverse inverse_, smooth_;
 };
 
 Result<void> check(const Cloud& cloud, const Pinhole& camera, const NormalSettings& settings) {
