@@ -8,10 +8,12 @@
 namespace kinectlab {
 namespace {
 
+// What an ordinary pendulum has at most.
 constexpr double kLargestBob = 0.06;       // radius over length
-constexpr double kLightestBob = 2500.0;    // kg/m³: glass, stone, aluminium
+constexpr double kLightestBob = 600.0;     // kg/m³: wood
 constexpr double kDensestAir = 1.2;        // kg/m³
-constexpr double kHeaviestString = 0.005;  // of the bob
+constexpr double kHeaviestString = 0.005;  // kg/m: a cord of 2 to 3 mm
+constexpr double kHeaviestShare = 0.02;    // of the bob's mass, where that is not known
 
 }  // namespace
 
@@ -43,24 +45,31 @@ PendulumCorrections::PendulumCorrections(const PendulumBody& body, double length
                 lightest
             )
         );
+    if (heavy)
+        notes_.emplace_back(
+            "bob_density_kg_m3 is 0: the bob counts as so heavy that air and string do not matter."
+        );
     if (heavy || body.string_mass_kg == 0.0) return;
     const double volume = 4.0 / 3.0 * std::numbers::pi * std::pow(bob_radius_m_, 3);
-    const double mass = volume * body.bob_density_kg_m3.value_or(0.0);
-    if (body.string_mass_kg && mass > 0.0)
+    const double mass = volume * lightest;
+    if (body.string_mass_kg && body.bob_density_kg_m3 && mass > 0.0) {
         string_share_ = *body.string_mass_kg / mass;
-    else
-        leave_out(
-            "string",
-            kHeaviestString / 6.0,
-            fmt::format(
-                "{}: the string's mass is not corrected for, and one of up to {:.1f} % of the "
-                "bob's is in the budget.",
-                body.string_mass_kg
-                    ? "The bob's mass is not known without bob_radius_m and bob_density_kg_m3"
-                    : "string_mass_kg was not given",
-                kHeaviestString * 100.0
-            )
-        );
+        return;
+    }
+    const double heaviest = body.string_mass_kg.value_or(kHeaviestString * length_m);
+    const double share = mass > 0.0 ? heaviest / mass : kHeaviestShare;
+    leave_out(
+        "string",
+        share / 6.0,
+        fmt::format(
+            "{}: the string's mass is not corrected for, and one of up to {:.2g} % of the bob's "
+            "is in the budget.",
+            body.string_mass_kg
+                ? "The bob's mass is not known without bob_radius_m and bob_density_kg_m3"
+                : "string_mass_kg was not given",
+            share * 100.0
+        )
+    );
 }
 
 void PendulumCorrections::leave_out(const char* source, double bound, std::string note) {

@@ -21,14 +21,14 @@ std::vector<AnalysisSetting> pendulum_setting_list() {
          0.0,
          30000.0,
          {},
-         "Without it the air is in the budget as for 2500 kg/m³. 0: too heavy for air and string "
-         "to matter."},
+         "Without it the air is in the budget as for wood, 600 kg/m³. 0: too heavy for air and "
+         "string to matter."},
         {"air_density_kg_m3", 0.0, 100.0, {}, "1.2 in a room, 0 in a vacuum."},
         {"string_mass_kg",
          0.0,
          100.0,
          {},
-         "From the pivot to the bob; without it up to 0.5 % of the bob's mass is in the budget."}};
+         "From the pivot to the bob; without it up to 5 g for each metre is in the budget."}};
 }
 
 PendulumSettings pendulum_settings(

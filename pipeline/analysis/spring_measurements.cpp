@@ -14,7 +14,7 @@ namespace {
 using Eigen::VectorXd;
 using std::numbers::pi;
 
-constexpr double kSpringMassShare = 0.05;    // of the load, where the spring was not weighed
+constexpr double kHeaviestSpring = 0.1;      // of the load, where the spring was not weighed
 constexpr double kSpringMassFactorU = 0.01;  // of 1/3: 4/π² without any load
 
 double omega(const VectorXd& x) {
@@ -45,15 +45,17 @@ void add_stiffness(
     }
     const auto spring = s.find("spring_mass_kg");
     const bool weighed = spring != s.end();
-    const double spring_mass = weighed ? spring->second : kSpringMassShare * mass->second;
-    const double moved = mass->second + spring_mass / 3.0;
+    const double moved = mass->second + (weighed ? spring->second / 3.0 : 0.0);
     const double square = std::pow(omega(fit.parameters), 2);
     if (!weighed)
-        out.notes.emplace_back(
-            "The spring was not weighed: 5 % of the mass was assumed for it, a third of which "
-            "swings along, and as much stands in the budget."
-        );
-    const double along_u = spring_mass * (weighed ? kSpringMassFactorU : 1.0 / 3.0);
+        out.notes.push_back(fmt::format(
+            "spring_mass_kg was not given: the third of it that swings along is not corrected for, "
+            "and a spring of up to {:.0f} % of the mass is in the budget.",
+            100.0 * kHeaviestSpring
+        ));
+    // Not weighed: all from zero to the bound alike likely, and taken as zero.
+    const double along_u = weighed ? spring->second * kSpringMassFactorU
+                                   : mass->second * kHeaviestSpring / 3.0 / std::sqrt(3.0);
     out.measurements.push_back(budget.measure(
         "stiffness",
         "N/m",

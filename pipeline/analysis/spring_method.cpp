@@ -182,7 +182,7 @@ AnalysisMethod spring_method() {
          0.0,
          10.0,
          {},
-         "A third of it swings along; without it 5 ± 5 % of mass_kg, a line in the budget."},
+         "A third of it swings along; without it up to 10 % of mass_kg is in the budget."},
         {"drive_hz", 0.0, 20.0, 0.0, "Of a drive at a steady frequency; 0 = none."},
         {"drive_u_hz", 0.0, 1.0, 0.001, "Standard uncertainty of drive_hz."}};
     method.results = {

@@ -44,7 +44,7 @@ Measurement SwingBudgets::measure(
     const double length = known ? sensitivity.length + by_radius : sensitivity.length;
     const double assumed = known ? 0.0 : by_radius * swing_priors(settings_, p.radius).radius_sigma;
     Measurement m{std::move(name), formula(p), 0.0, std::move(unit), {}};
-    double others = 0.0;
+    double others = sensitivity.other_drag * sensitivity.other_drag;
     if (sensitivity.any_drag)
         for (const auto& model : fit_.drag.models)
             others += model.weight * std::pow(formula(model.parameters) - m.value, 2);

@@ -17,6 +17,7 @@ struct SwingSensitivity {
     double scale = 0.0;   ///< by a relative error of all lengths seen, the fit left as it is
     /// Whether the number means the same under every drag law.
     bool any_drag = true;
+    double other_drag = 0.0;  ///< what drag that was not seen does, where that is known otherwise
 };
 
 /// Makes measurements of formulas on a fit's parameters, each with the lines "statistics",

@@ -81,7 +81,16 @@ DragChoice choose_drag(
         if (candidate.criterion <
             best->criterion - (candidate.model.law == DragLaw::quadratic ? kStrong : 0.0))
             best = &candidate;
+    const bool both_admissible = all.back().model.law == DragLaw::both;
+    if (best->model.law == DragLaw::quadratic && both_admissible) {
+        choice.law = DragLaw::both;
+        choice.parameters = start;
+        choice.models = {{DragLaw::both, start, 1.0}};
+        choice.told_apart = true;
+        return choice;
+    }
     choice.law = best->model.law;
+    choice.linear_seen = choice.law == DragLaw::both;
     choice.parameters = best->model.parameters;
     choice.told_apart = true;
     double sum = 0.0;
@@ -96,6 +105,15 @@ DragChoice choose_drag(
     for (auto& model : choice.models)
         model.weight /= sum;
     return choice;
+}
+
+double rms_if_positive(double value, double u) {
+    if (!(u > 0.0)) return std::max(value, 0.0);
+    // Of the normal distribution cut off at zero.
+    const double a = value / u;
+    const double density = std::exp(-a * a / 2.0) / std::sqrt(2.0 * std::numbers::pi);
+    const double share = std::max(std::erfc(-a / std::numbers::sqrt2) / 2.0, 1e-12);
+    return u * std::sqrt(std::max(1.0 + a * a + a * density / share, 0.0));
 }
 
 }  // namespace kinectlab

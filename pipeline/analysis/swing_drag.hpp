@@ -27,7 +27,11 @@ struct DragChoice {
     /// and without the quadratic term, against the noise that the residuals show.
     double f_linear = 0.0;
     double f_quadratic = 0.0;
-    bool told_apart = false;  ///< linear from quadratic drag
+    bool told_apart = false;   ///< linear from quadratic drag
+    bool linear_seen = false;  ///< beside the quadratic term, under the law `both`
+    /// 1/rad, under the law `quadratic`: what a linear drag that is too weak to be seen may do to
+    /// the quadratic term.
+    double quadratic_u_by_linear = 0.0;
 };
 
 /// Free under this law, of what `base` frees.
@@ -38,7 +42,8 @@ struct DragChoice {
 /// noise that lasts makes the variance of the two drag terms larger. A term that comes out negative
 /// where it stands beside the other, or quadratic drag that pushes, is not admissible; quadratic
 /// drag alone is chosen only where it is better by 6, which Kass and Raftery, JASA 90 (1995), call
-/// strong.
+/// strong. Even then both terms are given where the linear one is admissible: too weak to be seen
+/// is not zero, and the quadratic one depends on it.
 [[nodiscard]] DragChoice choose_drag(
     std::span<const PositionSample> samples,
     const SwingParameters& start,
@@ -47,5 +52,9 @@ struct DragChoice {
     const SwingMask& base,
     double widening
 );
+
+/// Root mean square of a number that cannot be negative, estimated as `value` with this standard
+/// uncertainty by who did not know that.
+[[nodiscard]] double rms_if_positive(double value, double u);
 
 }  // namespace kinectlab

@@ -43,7 +43,7 @@ Result<SwingParameters> follow_free_swing(
     SwingParameters parameters = guess.parameters;
     range = {guess.begin, guess.end, false, false};
     double noise = 0.0;
-    bool looked_again = false;
+    double longest = 0.0;  // s, when both ends had been found
     for (bool whole = false;; whole = range.begin_found && range.end_found) {
         const Samples known = samples.subspan(range.begin, range.end - range.begin);
         const double periods = (known.back().t - known.front().t) / guess.period;
@@ -56,7 +56,7 @@ Result<SwingParameters> follow_free_swing(
                 "result"
             );
         if (noise == 0.0) noise = noise_factor(known, swing_residuals(known, parameters));
-        const bool many = periods > kManyPeriods;
+        const bool many = periods > kManyPeriods || whole || longest > 0.0;
         parameters = minimise(
             known,
             parameters,
@@ -66,10 +66,13 @@ Result<SwingParameters> follow_free_swing(
             0.3
         );
         if (whole) {
-            if (looked_again || (range.begin == 0 && range.end == samples.size()))
+            const double seconds = known.back().t - known.front().t;
+            if (seconds < longest + guess.period / 4.0 ||
+                (range.begin == 0 && range.end == samples.size()))
                 return parameters;
-            // An end that a few periods' fit could not follow may be followed by the whole one's.
-            looked_again = true;
+            // An end that the fit to a part could not follow, as strong drag changes the swing, may
+            // be followed by the longer one's.
+            longest = seconds;
             range.begin_found = range.end_found = false;
         }
 
@@ -181,6 +184,10 @@ Result<SwingFit> fit_swing(
              noisy.variance(kQuadratic) / c(kQuadratic, kQuadratic)}
         );
         fit.drag = choose_drag(samples, fit.parameters, weights, priors, base, widening);
+        if (fit.drag.law == DragLaw::quadratic)
+            fit.drag.quadratic_u_by_linear =
+                std::abs(c(kQuadratic, kDamping)) / c(kDamping, kDamping) *
+                rms_if_positive(fit.parameters.damping, std::sqrt(noisy.variance(kDamping)));
     }
     fit.parameters = fit.drag.parameters;
     fit.residuals = swing_residuals(samples, fit.parameters);

@@ -77,19 +77,21 @@ std::vector<Measurement> swing_measurements(
         budgets.measure("small_angle_period", "s", small_period, {.clock = small_period(p)})
     );
     all.push_back(budgets.measure("amplitude", "rad", turning_angle, {.any_drag = false}));
+    // Where one number stands for all drag its name is that of the rate, under any law.
+    const bool one_number = fit.drag.law == DragLaw::linear;
+    const auto damping = [&](const SwingParameters& x) {
+        return one_number ? falling_rate(x, duration_s) : x.damping;
+    };
     if (fit.drag.law != DragLaw::quadratic)
-        all.push_back(budgets.measure(
-            "damping",
-            "1/s",
-            [](const SwingParameters& x) { return x.damping; },
-            {.clock = p.damping, .any_drag = false}
-        ));
+        all.push_back(
+            budgets.measure("damping", "1/s", damping, {.clock = p.damping, .any_drag = one_number})
+        );
     if (fit.drag.law != DragLaw::linear)
         all.push_back(budgets.measure(
             "quadratic_damping",
             "1/rad",
             [](const SwingParameters& x) { return x.quadratic; },
-            {.any_drag = false}
+            {.any_drag = false, .other_drag = fit.drag.quadratic_u_by_linear}
         ));
     if (falling_rate(p, duration_s) > 0.0)
         all.push_back(budgets.measure("quality_factor", "1", quality));

@@ -44,20 +44,27 @@ std::string drag_note(const SwingFit& fit) {
         drag.f_linear,
         drag.f_quadratic
     );
-    if (drag.law == DragLaw::both)
+    if (drag.law == DragLaw::both && drag.linear_seen)
         return "Drag: linear and quadratic, both show in the amplitude's fall" + figures + ".";
+    if (drag.law == DragLaw::both)
+        return "Drag: quadratic; as the speed squared the air takes the swing away better than as "
+               "the speed" +
+               figures +
+               ". A linear term does not show by itself, but both are given, because what "
+               "quadratic_damping comes to depends on it.";
     if (drag.law == DragLaw::quadratic)
         return "Drag: quadratic; as the speed squared the air takes the swing away better than as "
                "the speed" +
                figures +
-               ". quadratic_damping then holds whatever linear drag there is as well, and its "
-               "uncertainty does not know of that.";
+               ". What a linear term too weak to be seen may do to quadratic_damping is in its "
+               "budget.";
     if (drag.told_apart || fit.parameters.damping <= 0.0)
-        return "Drag: linear; a quadratic term is not seen" + figures + ".";
+        return "Drag: linear; a quadratic term is not seen" + figures +
+               ". damping is the rate at which all drag together makes this amplitude fall.";
     const SwingParameters* other = under(drag, DragLaw::quadratic);
     return fmt::format(
         "Drag: counted as linear; this run does not tell linear from quadratic drag{}. damping is "
-        "the rate at which both together make this amplitude fall{}.",
+        "the rate at which all drag together makes this amplitude fall{}.",
         figures,
         other != nullptr
             ? fmt::format(", as quadratic drag it would be {:.3g}/rad", other->quadratic)

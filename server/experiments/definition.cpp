@@ -42,6 +42,12 @@ std::string range_of(const Parameter& parameter) {
     return text;
 }
 
+std::optional<double> default_of(const Parameter& parameter, RigKind rig) {
+    if (rig == RigKind::simulated && parameter.simulated_default)
+        return parameter.simulated_default;
+    return parameter.default_value;
+}
+
 /// Whether the analysis can do nothing without this parameter.
 bool is_required(const Definition& definition, const std::string& parameter) {
     const auto method = analysis_method(definition.analysis.method);
@@ -88,7 +94,7 @@ Result<Values> validate(const Definition& definition, const Values& given, RigKi
         const auto found = given.find(name);
         if (found != given.end())
             values[name] = found->second;
-        else if (const auto otherwise = find(definition, name)->default_value;
+        else if (const auto otherwise = default_of(*find(definition, name), rig);
                  otherwise && (rig != RigKind::elsewhere || is_required(definition, name)))
             values[name] = *otherwise;
     }

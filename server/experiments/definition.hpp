@@ -24,8 +24,10 @@ struct Parameter {
     double max = 0.0;
     double step = 0.0;                    ///< of the input field; values between the steps are fine
     std::optional<double> default_value;  ///< none: not given unless somebody gives it
-    std::string help;                     ///< one sentence for a student
-    bool simulation_only = false;         ///< only a simulated rig can change it
+    /// What a simulated rig has instead of default_value; of a real thing it would be a guess.
+    std::optional<double> simulated_default;
+    std::string help;              ///< one sentence for a student
+    bool simulation_only = false;  ///< only a simulated rig can change it
 };
 
 /// An object of the experiment as in its definition: the JSON of one element of a list of objects,
@@ -111,7 +113,8 @@ using Values = std::map<std::string, double>;
 /// real one, and left out of its values.
 enum class RigKind { simulated, real, elsewhere };
 
-/// The values of all parameters: those given, the others by default. Errors name the parameter:
+/// The values of all parameters: those given, the others by default, a simulated rig's own first.
+/// Errors name the parameter:
 /// unknown (with the nearest valid name), out of range, NaN, or not to be set on a real rig. What
 /// moved elsewhere is not bound to a rig's ranges: what cannot be negative has any value from 0;
 /// nor has it a rig's defaults, but for what the analysis cannot do without.

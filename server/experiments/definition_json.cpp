@@ -4,6 +4,7 @@
 
 #include "pipeline/core/nearest_name.hpp"
 #include "pipeline/track/carrying_plane.hpp"
+#include "server/experiments/apparatus_check.hpp"
 #include "server/experiments/definition.hpp"
 #include "server/experiments/definition_parts_json.hpp"
 #include "server/experiments/objects_json.hpp"
@@ -20,7 +21,17 @@ using nlohmann::json;
 
 Result<Parameter> read_parameter(const json& element, const std::string& path) {
     ObjectReader reader(
-        element, path, {"name", "unit", "min", "max", "step", "default", "help", "simulation_only"}
+        element,
+        path,
+        {"name",
+         "unit",
+         "min",
+         "max",
+         "step",
+         "default",
+         "simulated_default",
+         "help",
+         "simulation_only"}
     );
     Parameter parameter;
     parameter.name = reader.text("name");
@@ -29,15 +40,17 @@ Result<Parameter> read_parameter(const json& element, const std::string& path) {
     parameter.max = reader.number("max");
     parameter.step = reader.number("step");
     parameter.default_value = reader.optional_number("default");
+    parameter.simulated_default = reader.optional_number("simulated_default");
     parameter.help = reader.text("help");
     parameter.simulation_only = reader.flag_or("simulation_only", false);
     if (!(parameter.min < parameter.max))
         reader.refuse("min", "is not below max", "give min < max");
     if (!(parameter.step > 0.0)) reader.refuse("step", "is not above 0", "give a positive step");
-    if (parameter.default_value < parameter.min || parameter.default_value > parameter.max) {
-        if (parameter.default_value)
-            reader.refuse("default", "lies outside min and max", "give a default between them");
-    }
+    for (const auto& [key, value] :
+         {std::pair("default", parameter.default_value),
+          std::pair("simulated_default", parameter.simulated_default)})
+        if (value && (*value < parameter.min || *value > parameter.max))
+            reader.refuse(key, "lies outside min and max", "give a default between them");
     const auto promised = unit_in_name(parameter.name);
     if (!promised.empty() && parameter.unit != promised)
         reader.refuse(
@@ -128,6 +141,13 @@ Result<Definition> read_definition(const json& document) {
     definition.apparatus = reader.text("apparatus");
     const auto& parameters = reader.array("parameters");
     const auto& objects = reader.array("objects");
+    if (reader.ok() && objects.empty())
+        reader.refuse(
+            "objects",
+            "is empty",
+            "list what to track, such as {\"name\": \"ball\", \"method\": \"sphere\", "
+            "\"radius_m\": 0.04}"
+        );
     if (!reader.ok()) return reader.error();
 
     for (const auto& [text, path] :
@@ -168,6 +188,7 @@ Result<Definition> read_definition(const json& document) {
         definition.preprocess = *preprocess;
     }
     if (auto ok = read_parts(document, definition); !ok) return tl::unexpected(ok.error());
+    if (auto ok = check_apparatus(definition); !ok) return tl::unexpected(ok.error());
     return definition;
 }
 
@@ -184,6 +205,7 @@ json to_json(const Definition& definition) {
              {"help", p.help},
              {"simulation_only", p.simulation_only}}
         );
+        if (p.simulated_default) parameters.back()["simulated_default"] = *p.simulated_default;
     }
     json objects = json::array();
     for (const auto& object : definition.objects)

@@ -4,6 +4,7 @@
 #include <array>
 #include <cctype>
 #include <string>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -27,6 +28,20 @@ constexpr std::array<std::string_view, 83> kFormulaCommands{
     "right",  "quad",   "qquad",  "circ",     "to",      "rightarrow", "Rightarrow", "lVert",
     "rVert",  "ldots",  "cdots"};
 
+constexpr const char* kEndless = "begins a formula that does not end";
+
+/// The formula that is being read; none where the mark is empty.
+struct Formula {
+    std::string_view mark;  ///< "$" or "$$", which ends it too
+    std::size_t opened = 0;
+    std::vector<std::size_t> open_braces;
+    std::vector<std::size_t> open_lefts;
+};
+
+std::string closing(const Formula& formula) {
+    return fmt::format("close it with {}, in the same paragraph if it stands in one", formula.mark);
+}
+
 bool is_letter(char c) {
     return std::isalpha(static_cast<unsigned char>(c)) != 0;
 }
@@ -40,6 +55,26 @@ int line_of(std::string_view text, std::size_t at) {
 /// The word at the place, for a message.
 std::string excerpt(std::string_view text, std::size_t at) {
     return std::string(text.substr(at, 24));
+}
+
+std::string_view command_at(std::string_view text, std::size_t backslash) {
+    std::size_t end = backslash + 1;
+    while (end < text.size() && is_letter(text[end]))
+        ++end;
+    return text.substr(backslash + 1, end - backslash - 1);
+}
+
+bool is_known(std::string_view command) {
+    return std::find(kFormulaCommands.begin(), kFormulaCommands.end(), command) !=
+           kFormulaCommands.end();
+}
+
+/// Whether an empty line, or a point of a list, follows: the page cuts the text there.
+bool ends_paragraph(std::string_view text, std::size_t at) {
+    if (text[at] != '\n') return false;
+    const std::size_t next = text.find_first_not_of(" \t", at + 1);
+    return next != std::string_view::npos &&
+           (text[next] == '\n' || text.substr(next).starts_with("- "));
 }
 
 }  // namespace
@@ -60,42 +95,62 @@ Result<void> check_student_text(std::string_view text, const std::string& path) 
             fmt::format("is {} bytes long", text.size()),
             fmt::format("give at most {}", kMostBytes)
         );
-    bool formula = false;
-    std::size_t opened = 0;
+    Formula formula;
     for (std::size_t i = 0; i < text.size(); ++i) {
         const char c = text[i];
         const char next = i + 1 < text.size() ? text[i + 1] : '\0';
         if (static_cast<unsigned char>(c) < 0x20 && c != '\n')
             return refuse(i, "holds a control character", "take it out");
-        if (c == '$') {
-            formula = !formula;
-            opened = i;
-            if (next == '$') ++i;
-            continue;
-        }
         if (c == '<' && (is_letter(next) || next == '/' || next == '!' || next == '?'))
             return refuse(
                 i, "looks like HTML", "write plain text; a sign for less needs a space after it"
             );
-        if (!formula && c == ']' && next == '(')
-            return refuse(i, "looks like a link", "name the source in words");
-        if (!formula || c != '\\') continue;
-        std::size_t end = i + 1;
-        while (end < text.size() && is_letter(text[end]))
-            ++end;
-        const std::string_view command = text.substr(i + 1, end - i - 1);
-        const bool known = std::find(kFormulaCommands.begin(), kFormulaCommands.end(), command) !=
-                           kFormulaCommands.end();
+        if (c == '$') {
+            const std::string_view mark = next == '$' ? "$$" : "$";
+            if (formula.mark.empty())
+                formula = {mark, i};
+            else if (formula.mark != mark)
+                return refuse(formula.opened, kEndless, closing(formula));
+            else if (!formula.open_braces.empty())
+                return refuse(formula.open_braces.back(), "opens a brace", "close it with }");
+            else if (!formula.open_lefts.empty())
+                return refuse(formula.open_lefts.back(), "has no \\right", "give both or none");
+            else
+                formula = {};
+            i += mark.size() - 1;
+            continue;
+        }
+        if (formula.mark.empty()) {
+            if (c == ']' && next == '(')
+                return refuse(i, "looks like a link", "name the source in words");
+            continue;
+        }
+        if (formula.mark == "$" && ends_paragraph(text, i))
+            return refuse(formula.opened, kEndless, closing(formula));
+        if (c == '{') formula.open_braces.push_back(i);
+        if (c == '}') {
+            if (formula.open_braces.empty())
+                return refuse(i, "closes a brace that none opened", "take it out, or open it");
+            formula.open_braces.pop_back();
+        }
+        if (c != '\\') continue;
+        const std::string_view command = command_at(text, i);
         const bool sign = command.empty() && kFormulaSigns.find(next) != std::string::npos;
-        if (!known && !sign)
+        if (!is_known(command) && !sign)
             return refuse(
                 i,
                 "is no command for formulas here",
                 "use plain symbols, \\frac, \\sqrt, Greek letters and the like"
             );
-        i = std::max(end - 1, i + (sign ? 1U : 0U));
+        if (command == "left") formula.open_lefts.push_back(i);
+        if (command == "right") {
+            if (formula.open_lefts.empty())
+                return refuse(i, "has no \\left before it", "give both or none");
+            formula.open_lefts.pop_back();
+        }
+        i += sign ? 1U : command.size();
     }
-    if (formula) return refuse(opened, "begins a formula that does not end", "close it with $");
+    if (!formula.mark.empty()) return refuse(formula.opened, kEndless, closing(formula));
     return {};
 }
 

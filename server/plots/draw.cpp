@@ -13,8 +13,8 @@ namespace kinectlab::plots {
 namespace {
 
 constexpr double kWidth = 720.0;
-constexpr double kHeight = 400.0;
-constexpr double kSquareHeight = 620.0;
+constexpr double kMarkEach = 80.0;   // at most one mark for so much of the x axis ...
+constexpr double kMarkEachY = 48.0;  // ... and of the y axis
 constexpr double kLeft = 76.0;
 constexpr double kRight = 18.0;
 constexpr double kTop = 64.0;
@@ -44,6 +44,10 @@ struct Frame {
         return top + height - (value - y.low) / (y.high - y.low) * height;
     }
 };
+
+int marks_on(double length, double each) {
+    return std::clamp(static_cast<int>(std::ceil(length / each)), 2, 8);
+}
 
 /// Widens the axis whose metre would be longer than the other's.
 void make_equal(Frame& frame) {
@@ -129,9 +133,9 @@ std::optional<Format> format_named(std::string_view name) {
     return std::nullopt;
 }
 
-std::string draw(const Plot& plot, Format format) {
-    const double height = plot.equal_axes ? kSquareHeight : kHeight;
-    Canvas canvas(kWidth, height, format);
+std::string draw(const Plot& plot, Format format, const Sheet& sheet) {
+    const double height = plot.equal_axes ? sheet.equal_height : sheet.height;
+    Canvas canvas(sheet.width, height, format);
     canvas.text(kLeft, 26.0, plot.title, Align::left, 15.0);
     Range x;
     Range y;
@@ -144,12 +148,16 @@ std::string draw(const Plot& plot, Format format) {
             y.take(series.y[i] + (std::isfinite(u) ? u : 0.0));
         }
     if (x.empty()) {
-        canvas.text(kWidth / 2.0, height / 2.0, "nothing to show", Align::centre);
+        canvas.text(sheet.width / 2.0, height / 2.0, "nothing to show", Align::centre);
         return canvas.finish();
     }
-    Frame frame{axis_for(x.low, x.high, 8), axis_for(y.low, y.high, 6)};
-    frame.width = kWidth - kLeft - kRight;
-    frame.height = height - kTop - kBottom;
+    const double width = sheet.width - kLeft - kRight;
+    const double high = height - kTop - kBottom;
+    Frame frame{
+        axis_for(x.low, x.high, marks_on(width, kMarkEach)),
+        axis_for(y.low, y.high, marks_on(high, kMarkEachY))};
+    frame.width = width;
+    frame.height = high;
     if (plot.equal_axes) make_equal(frame);
     draw_axes(canvas, frame, plot);
     draw_legend(canvas, plot);

@@ -14,17 +14,22 @@ namespace {
 
 using nlohmann::json;
 
+// One A4 page: tables side by side, the budget beside the sentences, three plots in a row.
 constexpr const char* kStyle =
-    "@page{size:A4;margin:12mm}"
-    "body{font:10pt/1.4 system-ui,'DejaVu "
-    "Sans',sans-serif;color:#20252c;max-width:186mm;margin:6mm auto}"
-    "h1{font-size:17pt;margin:0}h2{font-size:11pt;margin:4mm 0 1mm}p{margin:1mm 0}"
-    ".main{font-size:20pt;margin:2mm 0}.off{border-left:3px solid #b3541e;padding-left:3mm}"
-    "table{border-collapse:collapse;width:100%}td,th{text-align:left;padding:.6mm 3mm .6mm 0;"
+    "@page{size:A4;margin:9mm 10mm}"
+    "body{font:8pt/1.3 system-ui,'DejaVu "
+    "Sans',sans-serif;color:#20252c;width:190mm;margin:6mm auto}@media print{body{margin:0}}"
+    "h1{font-size:15pt;margin:0}h2{font-size:9.5pt;margin:2.5mm 0 .6mm}p{margin:.6mm 0}"
+    ".main{font-size:16pt;margin:1mm 0}.off{border-left:3px solid #b3541e;padding-left:3mm}"
+    "table{border-collapse:collapse;width:100%}td,th{text-align:left;padding:.3mm 2mm .3mm 0;"
     "border-bottom:1px solid #dfe3e8;font-weight:normal;vertical-align:top}"
     "th{color:#5b6470}.n{font-variant-numeric:tabular-nums;white-space:nowrap}"
-    ".two{display:flex;flex-wrap:wrap;gap:2mm}.two img{width:calc(50% - 1mm)}.wide{width:100%}"
-    ".columns{display:flex;gap:8mm}.columns>div{flex:1}small{color:#5b6470}";
+    ".three{display:grid;grid-template-columns:repeat(3,1fr);gap:2mm;margin-top:2mm}img{width:100%;"
+    "display:block}"
+    ".columns{display:flex;gap:6mm}.columns>div{flex:1 1 "
+    "0;min-width:0}.columns>.more{flex-grow:1.35}"
+    "small{color:#5b6470;font-size:7pt;overflow-wrap:anywhere}";
+constexpr Sheet kSmall{400.0, 250.0, 250.0};
 
 std::string escaped(const std::string& text) {
     std::string safe;
@@ -50,7 +55,7 @@ std::string escaped(const std::string& text) {
 }
 
 /// The picture itself as an address, so that the page stands alone.
-std::string picture(const std::string& svg, const char* css, const std::string& words) {
+std::string picture(const std::string& svg, const std::string& words) {
     static const std::string kReserved = "%#\"<>&'";
     std::string address;
     for (const char c : svg) {
@@ -60,9 +65,7 @@ std::string picture(const std::string& svg, const char* css, const std::string& 
         else
             address += c;
     }
-    return fmt::format(
-        "<img class=\"{}\" alt=\"{}\" src=\"data:image/svg+xml,{}\">", css, escaped(words), address
-    );
+    return fmt::format("<img alt=\"{}\" src=\"data:image/svg+xml,{}\">", escaped(words), address);
 }
 
 std::string text_of(const json& value) {
@@ -188,14 +191,15 @@ std::string report_html(const ReportParts& parts) {
             "</div><div><h2>Parameters</h2>" +
             parameter_table(parts.definition, parts.result.value("parameters", json::object())) +
             "</div></div>";
-    html += acceptance(parts.result) + sentences(parts.result, "warnings", "Warnings") +
-            sentences(parts.result, "notes", "Assumed and estimated");
-    html += "<h2>Budget</h2>" +
-            picture(draw_budget(results, Format::svg), "wide", "Shares of the uncertainty");
-    html += "<h2>Plots</h2><div class=two>";
+    html += "<div class=columns><div class=more><h2>Budget</h2>" +
+            picture(draw_budget(results, Format::svg), "Shares of the uncertainty") +
+            "</div><div>" + acceptance(parts.result) +
+            sentences(parts.result, "warnings", "Warnings") +
+            sentences(parts.result, "notes", "Assumed and estimated") + "</div></div>";
+    html += "<div class=three>";
     for (const auto& stored : parts.plots) {
         const Plot plot = plot_from_json(stored);
-        html += picture(draw(plot, Format::svg), "", plot.title);
+        html += picture(draw(plot, Format::svg, kSmall), plot.title);
     }
     return html + "</div>" + provenance(parts.result) + "</body></html>\n";
 }

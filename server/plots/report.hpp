@@ -15,8 +15,9 @@ struct ReportParts {
     const nlohmann::json& plots;
 };
 
-/// One page of HTML for print: results, parameters, acceptance, budget, plots, provenance. Stands
-/// alone: pictures are inside, no script, every text escaped.
+/// HTML that prints as one page of A4 with six plots and sentences of usual length: results,
+/// parameters, acceptance, budget, plots, provenance. Stands alone: pictures are inside, no script,
+/// every text escaped.
 [[nodiscard]] std::string report_html(const ReportParts& parts);
 
 /// "9.8100 ± 0.0012": the uncertainty to two significant digits, the value to as many places.

@@ -137,12 +137,9 @@ void add_shares(const std::string& name, const Errors& errors, Figures& figures)
 }
 
 Errors errors_of(const FrameExperiment& experiment) {
-    // The simulated spring weighs nothing.
-    std::map<std::string, std::optional<double>> overrides;
-    if (experiment.definition.analysis.method == "spring") overrides["spring_mass_kg"] = 0.0;
     return over_seeds([&](std::uint64_t seed, Errors& errors) {
         const FrameRun run = seen_run(experiment, seed);
-        const AnalysisOutcome outcome = analysed(experiment, run, overrides);
+        const AnalysisOutcome outcome = analysed(experiment, run);
         errors.add(outcome, truth_of(experiment, run, outcome));
     });
 }

@@ -10,6 +10,8 @@ export interface Parameter {
   step: number;
   /** null: it is not given unless somebody fills it in. */
   default: number | null;
+  /** What a simulated rig has instead. */
+  simulatedDefault: number | null;
   help: string;
   simulationOnly: boolean;
 }
@@ -91,6 +93,7 @@ function readParameter(experiment: string, p: Json): Parameter {
     max: number(p['max'], Infinity),
     step: number(p['step']),
     default: numberOrNull(p['default']),
+    simulatedDefault: numberOrNull(p['simulated_default']),
     help: text(p['help']),
     simulationOnly: p['simulation_only'] === true,
   };

@@ -11,6 +11,8 @@ export interface ParameterRow {
   step: string;
   /** Empty: not given unless somebody fills it in. */
   default: string;
+  /** Named as in the definition. Empty: a simulated rig has the default too. */
+  simulated_default: string;
   help: string;
   simulationOnly: boolean;
 }
@@ -62,7 +64,7 @@ export function draftOf(document: Json): Draft {
       const p = record(value);
       return {
         name: text(p['name']), unit: text(p['unit']), min: numeral(p['min']), max: numeral(p['max']), step: numeral(p['step']),
-        default: numeral(p['default']), help: text(p['help']), simulationOnly: p['simulation_only'] === true,
+        default: numeral(p['default']), simulated_default: numeral(p['simulated_default']), help: text(p['help']), simulationOnly: p['simulation_only'] === true,
       };
     }),
     duration: sourceOf(document['duration_s']),
@@ -102,6 +104,7 @@ export function documentOf(draft: Draft): Written {
       return {
         name: p.name.trim(), unit: p.unit.trim(), min: writer.number(`${at}.min`, p.min), max: writer.number(`${at}.max`, p.max),
         step: writer.number(`${at}.step`, p.step), ...(p.default.trim() ? { default: writer.number(`${at}.default`, p.default) } : {}),
+        ...(p.simulated_default.trim() ? { simulated_default: writer.number(`${at}.simulated_default`, p.simulated_default) } : {}),
         help: p.help.trim(), simulation_only: p.simulationOnly,
       };
     }),

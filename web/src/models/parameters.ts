@@ -15,12 +15,17 @@ export interface ParameterGroups {
 
 /** A real rig has no knob for what only a simulation can change. */
 export function groupParameters(parameters: Parameter[], simulated: boolean): ParameterGroups {
-  const possible = parameters.filter((p) => simulated || !p.simulationOnly);
+  const possible = offeredOn(parameters, simulated).filter((p) => simulated || !p.simulationOnly);
   const duration = possible.filter((p) => p.name === 'duration_s');
   // How well something is known, and what is not given unless one wants to, is for the curious.
   const plain = possible.filter((p) => !duration.includes(p) && p.default !== null && !splitName(p.name).stem.endsWith('_u'));
   const first = [...plain.slice(0, openFields - duration.length), ...duration];
   return { first, more: possible.filter((p) => !first.includes(p)) };
+}
+
+/** As a rig offers them: a simulated one knows things of itself that of a real one would be a guess. */
+export function offeredOn(parameters: Parameter[], simulated: boolean): Parameter[] {
+  return simulated ? parameters.map((p) => ({ ...p, default: p.simulatedDefault ?? p.default })) : parameters;
 }
 
 /** The values to begin with; what has no default is not given. */

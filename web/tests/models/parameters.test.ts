@@ -1,6 +1,6 @@
 import { describe, expect, it } from 'vitest';
 import { readDefinition } from '../../src/api/experiment';
-import { defaultsOf, groupParameters, measuringTime, rangeText, readParameters } from '../../src/models/parameters';
+import { defaultsOf, groupParameters, measuringTime, offeredOn, rangeText, readParameters } from '../../src/models/parameters';
 
 const definition = readDefinition('pendulum', {
   title: 'Foucault pendulum',
@@ -66,4 +66,14 @@ describe('a parameter without a default', () => {
     expect(measuringTime(optional).replaceAll('\u00a0', ' ')).toBe('measures for 2 min');
     expect(measuringTime([])).toBe('');
   });
+});
+
+it('knows of a simulated rig what of a real one would be a guess', () => {
+  const { parameters } = readDefinition('x', {
+    parameters: [{ name: 'bob_density_kg_m3', unit: 'kg/m³', min: 0, max: 23000, step: 10, default: null, simulated_default: 0, help: '' }],
+  });
+  expect(defaultsOf(offeredOn(parameters, true))).toEqual({ bob_density_kg_m3: 0 });
+  expect(defaultsOf(offeredOn(parameters, false))).toEqual({});
+  expect(groupParameters(parameters, true).first[0]?.default).toBe(0);
+  expect(groupParameters(parameters, false).more[0]?.default).toBe(null);
 });

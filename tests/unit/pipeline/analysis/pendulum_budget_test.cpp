@@ -42,10 +42,25 @@ TEST(PendulumBudget, WhatIsNotGivenIsALine) {
     ASSERT_TRUE(result);
     const auto& g = named(*result, "g");
     EXPECT_NEAR(line(g, "bob size"), g.value * 0.4 * 0.0036 / std::sqrt(3.0), 1e-5);
-    EXPECT_NEAR(line(g, "air"), g.value * 1.5 * 1.2 / 2500.0 / std::sqrt(3.0), 1e-5);
-    EXPECT_NEAR(line(g, "string"), g.value * 0.005 / 6.0 / std::sqrt(3.0), 1e-5);
+    EXPECT_NEAR(line(g, "air"), g.value * 1.5 * 1.2 / 600.0 / std::sqrt(3.0), 1e-5);
+    EXPECT_NEAR(line(g, "string"), g.value * 0.02 / 6.0 / std::sqrt(3.0), 1e-5);
     EXPECT_NEAR(g.u, combined(g.budget), 1e-12);
     EXPECT_GE(result->notes.size(), 4U);
+}
+
+TEST(PendulumBudget, AnUnknownStringIsHeldAgainstTheBobThatIsKnown) {
+    PendulumSettings settings = exact_settings(kSwing);
+    const double steel = 7850.0 * 4.0 / 3.0 * std::numbers::pi * std::pow(0.05, 3);
+    settings.body = {0.05, 7850.0, {}, {}};
+    const auto cord = analyse_pendulum(noisy_path(), settings);
+    settings.body = {0.05, {}, 1.2, 0.002};
+    const auto bob = analyse_pendulum(noisy_path(), settings);
+    ASSERT_TRUE(cord && bob);
+    const double root_three = std::sqrt(3.0);
+    EXPECT_NEAR(line(named(*cord, "g"), "string"), 9.81 * 0.005 / steel / 6.0 / root_three, 1e-5);
+    EXPECT_NEAR(line(named(*cord, "g"), "air"), 9.81 * 1.5 * 1.2 / 7850.0 / root_three, 1e-5);
+    const double wood = 600.0 / 7850.0 * steel;
+    EXPECT_NEAR(line(named(*bob, "g"), "string"), 9.81 * 0.002 / wood / 6.0 / root_three, 1e-5);
 }
 
 TEST(PendulumBudget, BobAirAndStringAreCorrectedFor) {

@@ -40,8 +40,32 @@ TEST(PendulumDrag, Quadratic) {
     ASSERT_TRUE(result);
     expect_within(*result, "quadratic_damping", 0.08);
     expect_within(*result, "g", 9.81);
-    EXPECT_FALSE(has(*result, "damping"));
+    if (has(*result, "damping")) expect_within(*result, "damping", 0.0);
     EXPECT_THAT(result->notes, Contains(HasSubstr("Drag: quadratic")));
+}
+
+TEST(PendulumDrag, TheQuadraticTermKnowsThatALinearOneMayHideBesideIt) {
+    const Swing swing{.amplitude_deg = 20, .damping = 3e-4, .quadratic = 0.08, .seconds = 20};
+    for (unsigned seed = 1; seed <= 6; ++seed) {
+        const auto result =
+            analyse_pendulum(with_noise(generate(swing), seed), exact_settings(swing));
+        ASSERT_TRUE(result) << seed;
+        expect_within(*result, "quadratic_damping", 0.08);
+        EXPECT_LT(named(*result, "quadratic_damping").u, 2e-3) << seed;
+        if (has(*result, "damping")) expect_within(*result, "damping", 3e-4);
+    }
+}
+
+TEST(PendulumDrag, StrongDragIsFollowedFromTheFirstSecondOn) {
+    for (const double quadratic : {0.3, 0.5}) {
+        const auto result =
+            noisy({.amplitude_deg = 30, .damping = 0.05, .quadratic = quadratic, .seconds = 30});
+        ASSERT_TRUE(result) << to_text(result.error());
+        expect_within(*result, "amplitude", 30.0 * std::numbers::pi / 180.0);
+        expect_within(*result, "damping", 0.05);
+        expect_within(*result, "quadratic_damping", quadratic);
+        EXPECT_TRUE(result->fit.fit_lab.front().allFinite());
+    }
 }
 
 TEST(PendulumDrag, Both) {

@@ -68,6 +68,16 @@ TEST(Spring, TellsPeriodStiffnessAndDamping) {
     }
 }
 
+TEST(Spring, ASpringThatWasNotWeighedIsALineAndNoGuess) {
+    const auto out = analysed("spring", record(20.0, bobs, 5), {{"mass_kg", 0.2}});
+    ASSERT_TRUE(out) << to_text(out.error());
+    const Measurement& k = named(*out, "stiffness");
+    const double massless = 0.2 * kOmega * kOmega;
+    EXPECT_NEAR(k.value, massless, 1e-3 * massless);
+    EXPECT_NEAR(line(k, "spring mass"), massless * 0.1 / 3.0 / std::sqrt(3.0), 1e-3 * massless);
+    EXPECT_THAT(out->notes, Contains(HasSubstr("spring_mass_kg was not given")));
+}
+
 TEST(Spring, TellsTheDragOfTheSquareFromThatOfTheSpeed) {
     const auto linear = analysed("spring", record(20.0, bobs, 5), kMass);
     ASSERT_TRUE(linear) << to_text(linear.error());

@@ -56,6 +56,21 @@ TEST(Definition, ARealRigHasNoGravityToSet) {
     EXPECT_EQ(values->count("length_m"), 1u);
 }
 
+TEST(Definition, WhatASimulatedRigHasIsNoGuessOfARealOne) {
+    const auto simulated = validate(pendulum(), {}, RigKind::simulated);
+    const auto real = validate(pendulum(), {}, RigKind::real);
+    ASSERT_TRUE(simulated && real);
+    for (const char* name : {"bob_density_kg_m3", "air_density_kg_m3", "string_mass_kg"}) {
+        EXPECT_EQ(simulated->count(name), 1u) << name;
+        EXPECT_EQ(real->count(name), 0u) << name;
+    }
+    auto document = to_json(pendulum());
+    document["parameters"][0]["simulated_default"] = 99;
+    const auto outside = read_definition(document);
+    ASSERT_FALSE(outside);
+    EXPECT_EQ(outside.error().field, "parameters[0].simulated_default");
+}
+
 TEST(Definition, TheBobHasTheRunsRadius) {
     const auto objects = plan_for(pendulum(), {{"bob_radius_m", 0.03}}).objects;
     ASSERT_EQ(objects.size(), 1u);
@@ -160,6 +175,28 @@ TEST(Definition, AnalysisSettingsMustHaveTheRightUnitAndRange) {
     );
 }
 
+TEST(Definition, AnApparatusThatNoRigHasIsRefusedWithTheNearest) {
+    const auto error = refusal([](auto& d) { d["apparatus"] = "pendulm"; });
+    EXPECT_EQ(error.field, "apparatus");
+    EXPECT_THAT(error.cure, HasSubstr("pendulum"));
+}
+
+TEST(Definition, ADisplacementOutOfReachIsRefused) {
+    const auto by_parameter = refusal([](auto& d) { d["parameters"][3]["max"] = 80; });
+    EXPECT_EQ(by_parameter.field, "sequence[4].to");
+    EXPECT_THAT(by_parameter.message, HasSubstr("80°"));
+    EXPECT_THAT(by_parameter.cure, HasSubstr("narrow the range of amplitude_deg"));
+    const auto in_radians = refusal([](auto& d) { d["sequence"][4]["to"] = 10; });
+    EXPECT_EQ(in_radians.field, "sequence[4].to");
+    EXPECT_THAT(in_radians.cure, HasSubstr("1.047"));
+}
+
+TEST(Definition, AnObjectMustBeTracked) {
+    const auto error = refusal([](auto& d) { d["objects"] = nlohmann::json::array(); });
+    EXPECT_EQ(error.field, "objects");
+    EXPECT_THAT(error.message, HasSubstr("empty"));
+}
+
 TEST(Definition, TheSceneHasToBeLearned) {
     const auto error = refusal([](auto& d) {
         for (auto& step : d["sequence"])
@@ -177,6 +214,14 @@ TEST(Definition, TextThatCouldCarryMoreThanTextIsRefusedWithItsPlace) {
           "$\\def\\x{1}$",
           "$\\includegraphics{a}$",
           "$x$ and $y",
+          "$x$ costs 5 $\n\nand 6 $",
+          "$x$$",
+          "$$x$ and so on",
+          "$\\frac{a}{b$ and $}$",
+          "$a}$",
+          "$$\\sqrt{x$$",
+          "$\\left( x$",
+          "$x \\right)$",
           "a\x01b"}) {
         const auto error = refusal([&](auto& d) { d["theory"] = text; });
         EXPECT_EQ(error.field, "theory") << text;
