@@ -1,5 +1,6 @@
 #include "pipeline/analysis/object_plots.hpp"
 
+#include <algorithm>
 #include <limits>
 
 #include "pipeline/core/time.hpp"
@@ -27,6 +28,38 @@ std::vector<double> along(
     return values;
 }
 
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+
+/// Longer than any pause between neighbouring samples, s: beyond it the fit's own line would be a
+/// chord that it never took.
+double longest_step(const ObjectFit& fit) {
+    constexpr double kFrames = 2.5;
+    std::vector<double> steps;
+    for (std::size_t i = 1; i < fit.t.size(); ++i)
+        steps.push_back(to_seconds(fit.t[i] - fit.t[i - 1]));
+    if (steps.empty()) return 0.0;
+    const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
+    std::nth_element(steps.begin(), middle, steps.end());
+    return kFrames * *middle;
+}
+
+/// The fit as a line that breaks where nothing was seen.
+PlotSeries fit_line(
+    const ObjectFit& fit, const std::vector<double>& x, const std::vector<double>& y
+) {
+    const double longest = longest_step(fit);
+    PlotSeries line{"fit", PlotMark::line, {}, {}, {}};
+    for (std::size_t i = 0; i < x.size(); ++i) {
+        if (i > 0 && to_seconds(fit.t[i] - fit.t[i - 1]) > longest) {
+            line.x.push_back(x[i]);
+            line.y.push_back(kNan);
+        }
+        line.x.push_back(x[i]);
+        line.y.push_back(y[i]);
+    }
+    return line;
+}
+
 }  // namespace
 
 Plot position_plot(
@@ -45,7 +78,7 @@ Plot position_plot(
         symbol + " / m",
         false,
         {{"measured", PlotMark::points, t, along(fit.p_lab, origin, direction), {}},
-         {"fit", PlotMark::line, t, along(fit.fit_lab, origin, direction), {}}}};
+         fit_line(fit, t, along(fit.fit_lab, origin, direction))}};
 }
 
 Plot residual_plot(const ObjectFit& fit, const std::string& name) {
@@ -82,11 +115,7 @@ Plot path_plot(
           along(fit.p_lab, origin, right),
           along(fit.p_lab, origin, up),
           {}},
-         {"fit",
-          PlotMark::line,
-          along(fit.fit_lab, origin, right),
-          along(fit.fit_lab, origin, up),
-          {}}}};
+         fit_line(fit, along(fit.fit_lab, origin, right), along(fit.fit_lab, origin, up))}};
 }
 
 Plot phase_plot(
@@ -96,11 +125,12 @@ Plot phase_plot(
     const Vector3d& direction,
     const std::string& symbol
 ) {
-    constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+    const double longest = longest_step(fit);
     const auto x = along(fit.fit_lab, origin, direction);
     std::vector<double> v(x.size(), kNan);
     for (std::size_t i = 1; i + 1 < x.size(); ++i)
-        v[i] = (x[i + 1] - x[i - 1]) / to_seconds(fit.t[i + 1] - fit.t[i - 1]);
+        if (const double dt = to_seconds(fit.t[i + 1] - fit.t[i - 1]); dt <= longest)
+            v[i] = (x[i + 1] - x[i - 1]) / dt;
     PlotSeries measured{"measured", PlotMark::points, {}, {}, {}};
     for (const auto& sample : trajectory.samples) {
         if (sample.status != TrackStatus::tracked) continue;
@@ -113,7 +143,7 @@ Plot phase_plot(
         symbol + " / m",
         "v / (m/s)",
         false,
-        {std::move(measured), {"fit", PlotMark::line, x, std::move(v), {}}}};
+        {std::move(measured), fit_line(fit, x, v)}};
 }
 
 void label_pixels(std::vector<Plot>& plots) {
