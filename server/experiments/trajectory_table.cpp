@@ -112,10 +112,11 @@ Result<void> read_rows(const Rows& rows, std::size_t first, TrajectoryTable& tab
         if (!row) {
             for (std::size_t later = i + 1; later < rows.lines.size(); ++later)
                 if (row_of(rows, later, cells)) return tl::unexpected(row.error());
+            const std::size_t count = rows.lines.size() - i;
             table.warnings.push_back(
-                "left out " + std::to_string(rows.lines.size() - i) +
-                " line(s) at the table's end, which are cut off or no numbers, from line " +
-                std::to_string(rows.lines[i].number) + " on"
+                "left out the table's last " +
+                (count == 1 ? std::string("line") : std::to_string(count) + " lines") +
+                ", cut off or no numbers, from line " + std::to_string(rows.lines[i].number) + " on"
             );
             return {};
         }

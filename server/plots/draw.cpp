@@ -111,17 +111,23 @@ void draw_points(Canvas& canvas, const Frame& frame, const PlotSeries& series, C
     }
 }
 
-void draw_legend(Canvas& canvas, const Plot& plot) {
+void draw_legend(Canvas& canvas, const Plot& plot, double sheet_width) {
     double x = kLeft;
+    double y = 46.0;
     for (std::size_t i = 0; i < plot.series.size(); ++i) {
         const PlotSeries& series = plot.series[i];
         const Colour colour = curve_colour(i);
+        const double width = 24.0 + canvas.text_width(series.name, 11.0);
+        if (x > kLeft && x + width > sheet_width) {
+            x = kLeft;
+            y += 13.0;
+        }
         if (series.mark == PlotMark::line)
-            canvas.line(x, 46.0, x + 18.0, 46.0, colour, 2.0);
+            canvas.line(x, y, x + 18.0, y, colour, 2.0);
         else
-            canvas.dot(x + 9.0, 46.0, 3.0, colour);
-        canvas.text(x + 24.0, 50.0, series.name, Align::left, 11.0);
-        x += 24.0 + canvas.text_width(series.name, 11.0) + 18.0;
+            canvas.dot(x + 9.0, y, 3.0, colour);
+        canvas.text(x + 24.0, y + 4.0, series.name, Align::left, 11.0);
+        x += width + 18.0;
     }
 }
 
@@ -160,7 +166,7 @@ std::string draw(const Plot& plot, Format format, const Sheet& sheet) {
     frame.height = high;
     if (plot.equal_axes) make_equal(frame);
     draw_axes(canvas, frame, plot);
-    draw_legend(canvas, plot);
+    draw_legend(canvas, plot, sheet.width);
     canvas.clip(frame.left, frame.top, frame.width, frame.height);
     for (std::size_t i = 0; i < plot.series.size(); ++i) {
         const auto& series = plot.series[i];

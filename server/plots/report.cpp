@@ -17,7 +17,7 @@ using nlohmann::json;
 // One A4 page: tables side by side, the budget beside the sentences, three plots in a row.
 constexpr const char* kStyle =
     "@page{size:A4;margin:9mm 10mm}"
-    "body{font:8pt/1.3 system-ui,'DejaVu "
+    "body{font:8pt/1.25 system-ui,'DejaVu "
     "Sans',sans-serif;color:#20252c;width:190mm;margin:6mm auto}@media print{body{margin:0}}"
     "h1{font-size:15pt;margin:0}h2{font-size:9.5pt;margin:2.5mm 0 .6mm}p{margin:.6mm 0}"
     ".main{font-size:16pt;margin:1mm 0}.off{border-left:3px solid #b3541e;padding-left:3mm}"
@@ -27,9 +27,9 @@ constexpr const char* kStyle =
     ".three{display:grid;grid-template-columns:repeat(3,1fr);gap:2mm;margin-top:2mm}img{width:100%;"
     "display:block}"
     ".columns{display:flex;gap:6mm}.columns>div{flex:1 1 "
-    "0;min-width:0}.columns>.more{flex-grow:1.35}"
+    "0;min-width:0}.columns>.more{flex-grow:1.1}"
     "small{color:#5b6470;font-size:7pt;overflow-wrap:anywhere}";
-constexpr Sheet kSmall{400.0, 250.0, 250.0};
+constexpr Sheet kSmall{400.0, 225.0, 225.0};
 
 std::string escaped(const std::string& text) {
     std::string safe;
@@ -191,10 +191,10 @@ std::string report_html(const ReportParts& parts) {
             "</div><div><h2>Parameters</h2>" +
             parameter_table(parts.definition, parts.result.value("parameters", json::object())) +
             "</div></div>";
+    html += acceptance(parts.result);
     html += "<div class=columns><div class=more><h2>Budget</h2>" +
             picture(draw_budget(results, Format::svg), "Shares of the uncertainty") +
-            "</div><div>" + acceptance(parts.result) +
-            sentences(parts.result, "warnings", "Warnings") +
+            "</div><div>" + sentences(parts.result, "warnings", "Warnings") +
             sentences(parts.result, "notes", "Assumed and estimated") + "</div></div>";
     html += "<div class=three>";
     for (const auto& stored : parts.plots) {

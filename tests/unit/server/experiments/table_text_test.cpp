@@ -80,11 +80,13 @@ TEST(TableText, WhatIsNoRowAtTheEndIsLeftOutWithAWarning) {
         const auto got = read(table + tail);
         ASSERT_TRUE(got) << tail;
         ASSERT_EQ(got->warnings.size(), 1U) << tail;
-        EXPECT_TRUE(got->warnings[0].starts_with("left out 1 line(s)")) << got->warnings[0];
+        EXPECT_TRUE(got->warnings[0].starts_with("left out the table's last line,"))
+            << got->warnings[0];
     }
     const auto two = read(table + "Statistics\nmean 3, most 4\n");
     ASSERT_TRUE(two);
-    EXPECT_TRUE(two->warnings.at(0).starts_with("left out 2 line(s)")) << two->warnings[0];
+    EXPECT_TRUE(two->warnings.at(0).starts_with("left out the table's last 2 lines,"))
+        << two->warnings[0];
     EXPECT_EQ(
         read(table + "pause\n10,0;1,25;2,5\n").error().message, "line 12: 'pause' is no number"
     );

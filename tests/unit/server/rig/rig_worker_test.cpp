@@ -61,7 +61,11 @@ protected:
     void start(double duration_s = 10.0, TimeNs ready_for = 5 * kMinute) {
         play(1.5);
         lab::Run run = TemporaryStore::run_for(booking_, rig_.now());
-        run.parameters = {{"length_m", 1.0}, {"bob_radius_m", 0.05}, {"amplitude_deg", 10.0}};
+        run.parameters = {
+            {"length_m", 1.0},
+            {"bob_radius_m", 0.05},
+            {"amplitude_deg", 10.0},
+            {"bob_density_kg_m3", 0.0}};
         run.duration_s = duration_s;
         run.release_until = rig_.now() + ready_for;
         const auto started = worker_.start(run, kBob);
